@@ -1,0 +1,122 @@
+"""The service's words as frozen records: sample, experiment, output."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import datetime
+from enum import StrEnum
+from typing import Any
+
+from app.images.crop import Rectangle
+
+
+class Status(StrEnum):
+    """Where an experiment stands."""
+
+    QUEUED = "queued"  # accepted and on disk; waits for a worker
+    RUNNING = "running"  # a worker has it; after a crash it is run again
+    SUCCEEDED = "succeeded"  # every output is on disk
+    FAILED = "failed"  # `error` says why and what to try
+    CANCELLED = "cancelled"  # stopped by a person
+
+    @property
+    def finished(self) -> bool:
+        """Whether nothing will change any more."""
+        return self in {Status.SUCCEEDED, Status.FAILED, Status.CANCELLED}
+
+
+@dataclass(frozen=True)
+class Sample:
+    """An uploaded or bundled picture, stored once, upright, in sRGB, without metadata.
+
+    ``digest`` is the SHA-256 (hex) of its stored PNG file, the name under which the blob store keeps it. ``depth`` is 8 or 16
+    bits per channel; ``channels`` counts colour channels (1 or 3); ``transparent`` says that the stored PNG has an alpha channel
+    with pixels that are not opaque. ``title`` is set for bundled samples, whose ids are their file stems.
+    """
+
+    id: str
+    digest: str
+    width: int
+    height: int
+    channels: int
+    depth: int
+    transparent: bool
+    created_at: datetime
+    frames: int = 1
+    media_type: str = "image/png"
+    title: str | None = None
+    bundled: bool = False
+
+
+@dataclass(frozen=True)
+class ExperimentInput:
+    """A crop of a sample. The rectangle is always explicit: the whole sample when none was asked for."""
+
+    sample: str
+    crop: Rectangle
+
+
+@dataclass(frozen=True)
+class Output:
+    """A named file of an experiment. Names that start with ``.`` are the service's own and are not listed."""
+
+    name: str
+    title: str
+    media_type: str
+    width: int
+    height: int
+    bytes: int
+    digest: str
+
+    @property
+    def listed(self) -> bool:
+        return not self.name.startswith(".")
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """One run: method, inputs and parameters (complete: defaults and sizes filled in), and what came of it.
+
+    ``owner`` is the SHA-256 (hex) of the owner's token. ``timings`` are seconds by stage, in order.
+    """
+
+    id: str
+    method: str
+    inputs: tuple[ExperimentInput, ...]
+    parameters: Mapping[str, Any]
+    listed: bool
+    owner: str
+    created_at: datetime
+    status: Status = Status.QUEUED
+    attempts: int = 0
+    outputs: tuple[Output, ...] = ()
+    timings: Mapping[str, float] = field(default_factory=dict)
+    error: str | None = None
+    started_at: datetime | None = None
+    finished_at: datetime | None = None
+
+    def output(self, name: str) -> Output | None:
+        """The output of this name, or None."""
+        return next((output for output in self.outputs if output.name == name), None)
+
+
+@dataclass(frozen=True)
+class Page:
+    """A page of the archive; ``cursor`` names the next one, None on the last."""
+
+    experiments: tuple[Experiment, ...]
+    cursor: str | None
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """An experiment's state of this moment, as the progress bar shows it.
+
+    ``position`` is its place in the queue (1 is next) while it waits; ``fraction`` is 0–1; ``stage`` names what is being done;
+    ``elapsed`` are the seconds since it was started.
+    """
+
+    status: Status
+    position: int | None = None
+    fraction: float = 0.0
+    stage: str | None = None
+    elapsed: float = 0.0

@@ -1,0 +1,134 @@
+"""What the use cases need from outside: protocols that `app.store` and `app.executor` implement."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from datetime import datetime
+from pathlib import Path
+from typing import Protocol
+
+from app.experiments.model import Experiment, Output, Page, Sample, Snapshot
+
+
+class ExperimentStore(Protocol):
+    """Samples and experiments, durable. Every call is one transaction; every method may be called from any thread."""
+
+    def add_sample(self, sample: Sample, owner: str | None = None) -> None: ...
+
+    def sample(self, sample_id: str) -> Sample:
+        """Raises `NotFoundError`."""
+        ...
+
+    def bundled_samples(self) -> list[Sample]: ...
+
+    def add(self, experiment: Experiment) -> None: ...
+
+    def get(self, experiment_id: str) -> Experiment:
+        """Raises `NotFoundError`, or `DeletedError` for one that was deleted."""
+        ...
+
+    def page(self, *, limit: int, cursor: str | None = None, method: str | None = None) -> Page:
+        """Succeeded, listed experiments, newest first. A malformed cursor raises `InvalidInputError`."""
+        ...
+
+    def unfinished(self) -> list[str]:
+        """Ids of queued and running experiments, oldest first."""
+        ...
+
+    def start(self, experiment_id: str) -> Experiment | None:
+        """Mark it running and count the attempt; None if it is already finished, cancelled or deleted."""
+        ...
+
+    def succeed(self, experiment_id: str, outputs: Sequence[Output], timings: Mapping[str, float]) -> bool:
+        """Record outputs and success in one transaction; False if it is no longer running (then nothing is recorded)."""
+        ...
+
+    def fail(self, experiment_id: str, error: str) -> bool:
+        """Queued or running → failed; False if it was finished already."""
+        ...
+
+    def cancel(self, experiment_id: str) -> bool:
+        """Queued or running → cancelled; False if it was finished already."""
+        ...
+
+    def add_output(self, experiment_id: str, output: Output) -> None:
+        """Add or replace one output of a succeeded experiment."""
+        ...
+
+    def set_listed(self, experiment_id: str, listed: bool) -> None: ...
+
+    def delete(self, experiment_id: str) -> None:
+        """Leave a tombstone (later `get` raises `DeletedError`) and forget everything else about it."""
+        ...
+
+    def remove_unused_samples(self, created_before: datetime) -> int:
+        """Remove uploaded samples older than this to which no experiment refers; returns how many."""
+        ...
+
+    def finished_before(self, moment: datetime) -> list[str]:
+        """Ids of the experiments that finished before this moment."""
+        ...
+
+    def digests(self) -> set[str]:
+        """Every digest that a sample or an output refers to."""
+        ...
+
+    def counts(self) -> Mapping[str, int]:
+        """Experiments by status."""
+        ...
+
+    def close(self) -> None: ...
+
+
+class BlobStore(Protocol):
+    """Files by the SHA-256 (hex) of their content; written to a temporary name, fsynced, renamed."""
+
+    def put(self, data: bytes) -> str: ...
+
+    def put_file(self, path: Path) -> str:
+        """Move a finished file in; the path is gone afterwards."""
+        ...
+
+    def path(self, digest: str) -> Path:
+        """Raises `NotFoundError`."""
+        ...
+
+    def remove_except(self, digests: Iterable[str], older_than: datetime) -> int:
+        """Remove every file that is not named and older than this; returns how many."""
+        ...
+
+
+class Executor(Protocol):
+    """The engine that runs jobs. A job is an experiment's id, or ``id@16`` for its texture at 16 bits.
+
+    It calls ``ended(job, failure)`` from a thread of its own once a job has left it: ``failure`` is None if the worker's function
+    returned, otherwise a sentence for people. What the worker's function computes it records itself.
+    """
+
+    def start(self) -> None:
+        """Return when jobs can run."""
+        ...
+
+    def close(self) -> None: ...
+
+    @property
+    def ready(self) -> bool: ...
+
+    def submit(self, job: str) -> None:
+        """Queue a job; one that is queued or runs already stays as it is. Returns at once, from any thread."""
+        ...
+
+    def cancel(self, job: str) -> None:
+        """Drop a queued job, stop a running one: first politely, then by restarting its worker process. Returns at once."""
+        ...
+
+    def snapshot(self, job: str) -> Snapshot | None:
+        """What is known of a job that waits or runs here; None for any other."""
+        ...
+
+    @property
+    def waiting(self) -> int:
+        """How many jobs wait."""
+        ...
+
+    def subscribe(self, listener: Callable[[str], None]) -> Callable[[], None]:
+        """Call ``listener(job)`` (from any thread) whenever a snapshot changed or a job ended; returns the unsubscribe call."""
+        ...

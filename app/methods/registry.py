@@ -1,0 +1,24 @@
+"""The registry: every method of the service, by name."""
+
+from app.errors import NotFoundError
+from app.methods.model import Method
+from app.methods.random_phase import ADSN, RPN
+
+METHODS: dict[str, Method] = {
+    "rpn": RPN,
+    "adsn": ADSN,
+}
+
+
+def method(name: str) -> Method:
+    """The method of this name.
+
+    Raises
+    ------
+    NotFoundError
+        With the names there are.
+    """
+    try:
+        return METHODS[name]
+    except KeyError:
+        raise NotFoundError(f"There is no method {name!r}. The methods are: {', '.join(METHODS)}.") from None

@@ -1,0 +1,50 @@
+"""Settings of the service: read once from the environment (prefix ``MICROTEXTURE_``), frozen, passed down."""
+
+import os
+from pathlib import Path
+from typing import Literal
+
+from pydantic import Field, SecretStr
+from pydantic_settings import BaseSettings, SettingsConfigDict
+
+ROOT = Path(__file__).resolve().parent.parent
+MEBIBYTE = 1 << 20
+
+
+class Settings(BaseSettings):
+    """Everything an operator may set; every field is the environment variable ``MICROTEXTURE_<NAME>``."""
+
+    model_config = SettingsConfigDict(env_prefix="MICROTEXTURE_", frozen=True, extra="ignore")
+
+    # State
+    data_dir: Path = Field(Path("data"), description="Directory of the database and of the content-addressed files.")
+    database_url: str | None = Field(
+        None, description="SQLAlchemy URL, e.g. postgresql+psycopg://…; default: SQLite under the data directory."
+    )
+    samples_dir: Path = Field(ROOT / "samples", description="Directory of the bundled photographs and their catalogue.")
+
+    # Engine
+    scheduler: str | None = Field(None, description="Address of a Dask scheduler (tcp://…); default: processes of ours.")
+    workers: int = Field(max(2, os.cpu_count() or 2), ge=1, description="Worker processes of the embedded engine.")
+    threads: int = Field(max(1, os.cpu_count() or 1), ge=1, description="Threads that one experiment computes with.")
+    worker_memory: int = Field(2048 * MEBIBYTE, ge=256 * MEBIBYTE, description="Bytes a worker process may use.")
+    time_limit: float = Field(300.0, gt=0, description="Seconds one experiment may run.")
+    queue_limit: int = Field(100, ge=1, description="Experiments that may wait; one more is answered 503.")
+
+    # Input limits
+    max_upload_bytes: int = Field(32 * MEBIBYTE, ge=1, description="Bytes of an uploaded file.")
+    max_upload_pixels: int = Field(50_000_000, ge=1, description="Pixels (width × height) of an uploaded picture.")
+    max_output_pixels: int = Field(1 << 26, ge=1, description="Pixels (width × height) of a synthesised texture.")
+    decode_seconds: float = Field(20.0, gt=0, description="Seconds the decoding of one upload may take.")
+    decode_memory: int = Field(2048 * MEBIBYTE, ge=64 * MEBIBYTE, description="Bytes the decoding of one upload may use.")
+
+    # Web
+    base_url: str | None = Field(None, description="Public address, e.g. https://texture.example.org; default: the request's.")
+    operator_token: SecretStr | None = Field(None, description="Bearer token that may delete any experiment.")
+    sample_keep_hours: float = Field(24.0, ge=0, description="Hours an uploaded sample without an experiment is kept.")
+    log_level: Literal["debug", "info", "warning", "error"] = "info"
+
+    @property
+    def sql_url(self) -> str:
+        """The database's SQLAlchemy URL."""
+        return self.database_url or f"sqlite:///{(self.data_dir / 'microtexture.sqlite3').resolve()}"
