@@ -1,0 +1,22 @@
+"""The pages' template environment, and what every template is given."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from fastapi import Request
+from fastapi.templating import Jinja2Templates
+from starlette.responses import Response
+
+from app.settings import ROOT
+
+TEMPLATES = Jinja2Templates(directory=Path(ROOT) / "templates")
+TEMPLATES.env.trim_blocks = True
+TEMPLATES.env.lstrip_blocks = True
+
+
+def render(request: Request, template: str, context: Mapping[str, Any], status: int = 200) -> Response:
+    """The page `template` with `context`; pages change with every experiment, so nothing keeps a copy without asking."""
+    response = TEMPLATES.TemplateResponse(request, template, dict(context), status_code=status)
+    response.headers["Cache-Control"] = "no-cache"
+    return response
