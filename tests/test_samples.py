@@ -1,0 +1,66 @@
+"""The catalogue of the bundled photographs is complete, honest and points at real regions."""
+
+import json
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from app.samples import CATALOGUE, BundledSample, bundled
+from app.settings import ROOT
+
+SAMPLES = ROOT / "samples"
+
+
+@pytest.fixture(scope="module")
+def photographs() -> list[BundledSample]:
+    return bundled(SAMPLES)
+
+
+def test_every_photograph_of_the_directory_has_exactly_one_entry(photographs: list[BundledSample]) -> None:
+    files = {path.name for path in SAMPLES.iterdir() if path.suffix in {".png", ".jpg"}}
+    assert {photograph.path.name for photograph in photographs} == files
+    assert len({photograph.id for photograph in photographs}) == len(photographs) == len(files)
+
+
+def test_every_suggested_crop_lies_inside_its_photograph(photographs: list[BundledSample]) -> None:
+    for photograph in photographs:
+        with Image.open(photograph.path) as image:
+            photograph.crop.within(*image.size)
+
+
+def test_suggested_crops_are_large_enough_to_hold_a_texture(photographs: list[BundledSample]) -> None:
+    for photograph in photographs:
+        smallest = 64 if photograph.kind == "scene" else 192
+        assert min(photograph.crop.width, photograph.crop.height) >= smallest, photograph.id
+
+
+def test_every_photograph_names_its_author_and_a_licence_that_sources_md_gives_it(
+    photographs: list[BundledSample],
+) -> None:
+    rows = {}
+    for line in (SAMPLES / "SOURCES.md").read_text(encoding="utf-8").splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split("|")]
+        rows[cells[0]] = cells
+    for photograph in photographs:
+        licence, author = rows[photograph.path.name][4:6]
+        assert photograph.licence.replace(" ", "-").removesuffix("-1.0") == licence.removesuffix("-1.0")
+        assert photograph.licence_url.startswith("https://creativecommons.org/")
+        assert photograph.credit == author or author.startswith("group")
+
+
+def test_titles_are_plain_words_and_tell_the_photographs_apart(photographs: list[BundledSample]) -> None:
+    titles = [photograph.title for photograph in photographs]
+    assert len(set(titles)) == len(titles)
+    assert all(title[0].isupper() and "_" not in title for title in titles)
+
+
+def test_a_directory_without_a_catalogue_has_no_samples(tmp_path: Path) -> None:
+    assert bundled(tmp_path) == []
+
+
+def test_an_entry_without_its_file_is_an_error_that_names_it(tmp_path: Path) -> None:
+    entry = json.loads((SAMPLES / CATALOGUE).read_text(encoding="utf-8"))[0]
+    (tmp_path / CATALOGUE).write_text(json.dumps([entry]), encoding="utf-8")
+    with pytest.raises(ValueError, match=entry["file"]):
+        bundled(tmp_path)
