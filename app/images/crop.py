@@ -45,11 +45,13 @@ class Rectangle:
             If it is empty or reaches outside.
         """
         if self.width < 1 or self.height < 1:
-            raise InvalidInputError("A crop is at least 1 × 1 pixel: draw it again, or give a width and a height.", "crop")
+            raise InvalidInputError(
+                "A crop is at least 1 × 1 pixel: draw it again, or give a width and a height.", "crop"
+            )
         if self.x < 0 or self.y < 0 or self.x + self.width > width or self.y + self.height > height:
             raise InvalidInputError(
-                f"The crop {self.x},{self.y},{self.width},{self.height} reaches outside the photograph, which is {width} × {height} "
-                "pixels: move it or make it smaller.",
+                f"The crop {self} reaches outside the photograph, which is {width} × {height} pixels: "
+                "move it or make it smaller.",
                 "crop",
             )
         return self

@@ -1,0 +1,214 @@
+"""PNG files written fast: strips are filtered and deflated on their own, in any order and from any thread, then joined.
+
+Every strip is a sequence of whole deflate blocks that ends on a byte border and refers to nothing outside itself, so that
+the strips one after the other are one deflate stream. Its rows carry the PNG filter Average, but the first one, which
+cannot see the row above, carries Sub. On noise-like pictures that is as small as trying every filter, at a fraction of
+the cost.
+"""
+
+import struct
+from concurrent.futures import ThreadPoolExecutor
+from threading import Lock
+from typing import NamedTuple
+
+import numpy as np
+from isal import isal_zlib
+from numpy.typing import NDArray
+
+DTYPES = {8: np.dtype(np.uint8), 16: np.dtype(np.uint16)}
+COLOUR_TYPES = {1: 0, 2: 4, 3: 2, 4: 6}  # grey, grey + alpha, RGB, RGBA
+SUB, AVERAGE = 1, 3
+RAW_DEFLATE = -15
+LEVEL = 1
+ADLER_BASE = 65521
+BAND_BYTES = 1 << 18  # what is filtered at once stays in the cache between its passes
+STRIP_BYTES = 1 << 20  # what `encode_png` gives to one thread
+
+
+class _Strip(NamedTuple):
+    rows: int
+    chunk: list[bytes]  # in pieces: joined once, with the whole file
+    adler: int
+
+
+class PngWriter:
+    """A PNG file that is written in strips, tagged as sRGB.
+
+    Parameters
+    ----------
+    width, height : int
+        Size in pixels, at least 1 × 1.
+    channels : int
+        1 grey, 2 grey and alpha, 3 RGB, 4 RGB and alpha.
+    depth : int
+        Bits per channel, 8 or 16.
+
+    Raises
+    ------
+    ValueError
+        If the size, the channels or the depth is none of these.
+
+    Notes
+    -----
+    `write` may be called from several threads at once: filtering and compression run in the calling thread.
+
+    Examples
+    --------
+    >>> writer = PngWriter(width=5, height=4, channels=1, depth=8)
+    >>> writer.write(2, np.zeros((2, 5, 1), np.uint8))
+    >>> writer.write(0, np.zeros((2, 5, 1), np.uint8))
+    >>> writer.finish()[1:4]
+    b'PNG'
+    """
+
+    def __init__(self, width: int, height: int, channels: int, depth: int) -> None:
+        if width < 1 or height < 1 or channels not in COLOUR_TYPES or depth not in DTYPES:
+            raise ValueError(f"no PNG of {width} × {height} pixels with {channels} channels of {depth} bits")
+        self.width, self.height, self.channels, self.depth = width, height, channels, depth
+        self._strips: dict[int, _Strip] = {}
+        self._lock = Lock()
+
+    def write(self, y: int, block: NDArray[np.uint8] | NDArray[np.uint16]) -> None:
+        """Add the rows from ``y`` on.
+
+        Parameters
+        ----------
+        y : int
+            The block's first row in the picture.
+        block : ndarray, shape (n, W, C), or (n, W) with one channel
+            uint8 for 8 bits, uint16 for 16. It is not kept: the caller may use its memory again.
+
+        Raises
+        ------
+        ValueError
+            If the block's shape or type is not the picture's, or it reaches outside.
+        """
+        rows = len(block)
+        if block.dtype != DTYPES[self.depth] or block.size != rows * self.width * self.channels:
+            raise ValueError(f"a block of shape {block.shape} and type {block.dtype} is not of this picture")
+        if rows < 1 or y < 0 or y + rows > self.height:
+            raise ValueError(f"rows {y} to {y + rows} are not in a picture of {self.height} rows")
+        strip = _strip(block, self.channels * self.depth // 8)
+        with self._lock:
+            if y in self._strips:
+                raise ValueError(f"row {y} was written twice")
+            self._strips[y] = strip
+
+    def finish(self) -> bytes:
+        """Return the file's bytes.
+
+        Raises
+        ------
+        ValueError
+            If a row was not written, or written twice.
+        """
+        with self._lock:
+            strips = sorted(self._strips.items())
+        below, adler, length = 0, 1, self.width * self.channels * self.depth // 8 + 1
+        for y, strip in strips:
+            if y != below:
+                raise ValueError(f"row {min(y, below)} was written {'twice' if y < below else 'never'}")
+            below = y + strip.rows
+            adler = adler32_combine(adler, strip.adler, strip.rows * length)
+        if below != self.height:
+            raise ValueError(f"row {below} was written never")
+        header = struct.pack(">IIBBBBB", self.width, self.height, self.depth, COLOUR_TYPES[self.channels], 0, 0, 0)
+        pieces = [
+            b"\x89PNG\r\n\x1a\n",
+            *_chunk(b"IHDR", header),
+            *_chunk(b"sRGB", b"\0"),
+            *_chunk(b"IDAT", b"\x78\x01"),
+        ]
+        for _, strip in strips:
+            pieces += strip.chunk
+        # 03 00 is an empty last deflate block.
+        pieces += [*_chunk(b"IDAT", b"\x03\x00", adler.to_bytes(4, "big")), *_chunk(b"IEND")]
+        return b"".join(pieces)
+
+
+def encode_png(array: NDArray[np.uint8] | NDArray[np.uint16], threads: int = 1) -> bytes:
+    """Write a whole picture as PNG.
+
+    Parameters
+    ----------
+    array : ndarray, shape (H, W) or (H, W, C)
+        uint8 or uint16; C is 1 (grey), 2 (grey and alpha), 3 (RGB) or 4 (RGB and alpha).
+    threads : int, optional
+        How many threads compress; the file's bytes do not depend on it.
+
+    Returns
+    -------
+    bytes
+        The file.
+
+    Raises
+    ------
+    ValueError
+        If the shape or the type is none of these.
+    """
+    if array.ndim not in (2, 3) or array.dtype not in DTYPES.values():
+        raise ValueError(f"no PNG of an array of shape {array.shape} and type {array.dtype}")
+    height, width = array.shape[:2]
+    channels = array.shape[2] if array.ndim == 3 else 1
+    writer = PngWriter(width, height, channels, array.itemsize * 8)
+    step = max(1, STRIP_BYTES // (width * channels * array.itemsize))
+    with ThreadPoolExecutor(threads) as pool:
+        for written in [pool.submit(writer.write, y, array[y : y + step]) for y in range(0, height, step)]:
+            written.result()
+    return writer.finish()
+
+
+def adler32_combine(first: int, second: int, length: int) -> int:
+    """Adler-32 of two byte strings joined, from the checksum of each and the second one's length.
+
+    Examples
+    --------
+    >>> adler32_combine(isal_zlib.adler32(b"tex"), isal_zlib.adler32(b"ture"), 4) == isal_zlib.adler32(b"texture")
+    True
+    """
+    low = (first & 0xFFFF) + (second & 0xFFFF) - 1
+    high = (first >> 16) + (second >> 16) + length * ((first & 0xFFFF) - 1)
+    return high % ADLER_BASE << 16 | low % ADLER_BASE
+
+
+def _strip(block: NDArray[np.uint8] | NDArray[np.uint16], pixel: int) -> _Strip:
+    """Filter and deflate a block whose pixels have ``pixel`` bytes."""
+    big_endian = np.ascontiguousarray(block, block.dtype.newbyteorder(">"))
+    raw = big_endian.view(np.uint8).reshape(len(block), -1)
+    compressor = isal_zlib.compressobj(LEVEL, isal_zlib.DEFLATED, RAW_DEFLATE)
+    rows = max(1, BAND_BYTES // raw.shape[1])
+    parts: list[bytes] = []
+    adler = 1
+    for y in range(0, len(raw), rows):
+        filtered = _filtered(raw, y, min(y + rows, len(raw)), pixel)
+        parts.append(compressor.compress(filtered))
+        adler = isal_zlib.adler32(filtered, adler)
+    parts.append(compressor.flush(isal_zlib.Z_SYNC_FLUSH))
+    return _Strip(len(raw), _chunk(b"IDAT", *parts), adler)
+
+
+def _filtered(raw: NDArray[np.uint8], start: int, stop: int, pixel: int) -> NDArray[np.uint8]:
+    """Rows ``start`` to ``stop`` with their filter bytes, shape (stop − start, bytes of a row + 1)."""
+    out = np.empty((stop - start, raw.shape[1] + 1), np.uint8)
+    out[:, 0] = AVERAGE
+    if start == 0:
+        out[0, 0] = SUB
+        out[0, 1 : pixel + 1] = raw[0, :pixel]
+        np.subtract(raw[0, pixel:], raw[0, :-pixel], out=out[0, pixel + 1 :])
+    first = max(start, 1)
+    current, above, to = raw[first:stop], raw[first - 1 : stop - 1], out[first - start :, 1:]
+    np.subtract(current[:, :pixel], above[:, :pixel] >> 1, out=to[:, :pixel])
+    # ⌊(a + b) / 2⌋ = (a & b) + ((a ^ b) >> 1) needs no wider type.
+    left, above, rest = current[:, :-pixel], above[:, pixel:], to[:, pixel:]
+    half = left ^ above
+    half >>= 1
+    half += left & above
+    np.subtract(current[:, pixel:], half, out=rest)
+    return out
+
+
+def _chunk(name: bytes, *parts: bytes) -> list[bytes]:
+    checksum = isal_zlib.crc32(name)
+    for part in parts:
+        checksum = isal_zlib.crc32(part, checksum)
+    return [sum(map(len, parts)).to_bytes(4, "big"), name, *parts, checksum.to_bytes(4, "big")]
