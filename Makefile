@@ -1,0 +1,66 @@
+# Everything a person or a machine does with this checkout. `make help` lists it.
+
+PYTHON ?= python3
+PORT ?= 8000
+VENV := .venv
+BIN := $(VENV)/bin
+PIP := $(BIN)/python -m pip --disable-pip-version-check
+export PIP_NO_INPUT := 1
+
+.DEFAULT_GOAL := help
+.PHONY: help setup run test lint programs chaos load bench lock readme-picture clean
+
+help: ## list these targets
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-15s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+setup: $(VENV)/.ready ## build .venv with the locked dependencies and the command `microtexture`
+
+run: setup ## serve on http://127.0.0.1:$(PORT), data in ./data
+	$(BIN)/microtexture serve --port $(PORT)
+
+test: lint programs ## everything: lint, types, unit, doctest, API, acceptance and crash tests
+	$(BIN)/pytest
+
+lint: $(VENV)/.ready-dev ## ruff and mypy
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+chaos: programs ## only the tests that kill processes
+	$(BIN)/pytest -m chaos
+
+load: $(VENV)/.ready-dev ## only the tests that send sustained load
+	$(BIN)/pytest -m load
+
+bench: $(VENV)/.ready-dev ## measure kernels and service on this machine and print one table
+	$(BIN)/python -m benchmarks
+
+readme-picture: programs ## make docs/gallery.png anew with a server and a browser
+	$(BIN)/python scripts/readme_picture.py
+
+lock: $(VENV)/.ready-dev ## resolve the dependencies of pyproject.toml anew
+	$(BIN)/uv pip compile $(LOCK_OPTIONS) --group build pyproject.toml -o requirements.lock
+	$(BIN)/uv pip compile $(LOCK_OPTIONS) --group dev pyproject.toml -c requirements.lock -o requirements-dev.lock
+
+# For every platform and every Python that pyproject.toml admits; `make lock UPGRADE=--upgrade` takes newer versions.
+LOCK_OPTIONS = --quiet --no-config --universal --python-version 3.11 --generate-hashes $(UPGRADE) \
+	--default-index https://pypi.org/simple --custom-compile-command "make lock"
+
+clean: ## remove the environment and caches, not ./data
+	rm -rf $(VENV) build dist *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis .schemathesis
+
+$(BIN)/python:
+	@scripts/check-python "$(PYTHON)"
+	$(PYTHON) -m venv $(VENV)
+
+$(VENV)/.ready: requirements.lock pyproject.toml | $(BIN)/python
+	$(PIP) install --quiet --require-hashes -r requirements.lock
+	$(PIP) install --quiet --no-deps --no-build-isolation --editable .
+	@touch $@
+
+$(VENV)/.ready-dev: requirements-dev.lock $(VENV)/.ready
+	$(PIP) install --quiet --require-hashes -r requirements-dev.lock
+	@touch $@
+
+programs: $(VENV)/.ready-dev
+	@scripts/test-packages
