@@ -1,0 +1,228 @@
+"""RPN and ADSN as methods: their parameters, and the pictures they give back."""
+
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field as Option
+
+from app.errors import InvalidInputError
+from app.images.png import PngWriter
+from app.methods.model import Context, Method, Picture, Reference, Size, Slot, Source, StillParams
+from app.synthesis.field import Field, Noise, row_blocks
+from app.synthesis.levels import Extent, Levels
+from app.synthesis.periodic import periodic_spectrum, smooth_component
+from app.synthesis.spectral import log_modulus
+from app.synthesis.spot import centre, spot_of
+from app.synthesis.team import Team
+
+ADVANCED = {"advanced": True}
+
+
+class RandomPhaseParams(StillParams):
+    """Parameters of RPN and ADSN."""
+
+    alpha: float = Option(
+        0.1,
+        ge=0,
+        le=0.5,
+        title="Transition α",
+        description="Width of the band along the border of the crop, as a part of its side, in which it fades out before it is "
+        "pasted into a larger image; only for textures larger than the crop. 0 cuts sharply and may leave streaks.",
+        json_schema_extra=ADVANCED,
+    )
+    window: Literal["bump", "gaussian"] = Option(
+        "bump",
+        title="Window",
+        description="How the crop fades out along its border: 'bump' is the smooth step of the IPOL article (usual α 0.1), "
+        "'gaussian' the profile of the TIP article (usual α 0.2).",
+        json_schema_extra=ADVANCED,
+    )
+    phase: Literal["add", "replace"] = Option(
+        "add",
+        title="Phase",
+        description="'add' shifts the phases of all colours by the same random amount and keeps the colours right; 'replace' gives "
+        "all colours one common phase (the literature's “wrong RPN”), to show the false colours that come of it.",
+        json_schema_extra=ADVANCED,
+    )
+    range: Literal["clip", "stretch"] = Option(
+        "clip",
+        title="Values out of range",
+        description="What becomes of values darker than black or brighter than white: 'clip' cuts them off; 'stretch' maps all values, "
+        "the same way in every colour, so that the extreme ones just fit.",
+        json_schema_extra=ADVANCED,
+    )
+    add_smooth: bool = Option(
+        False,
+        title="Add the smooth component",
+        description="Put the slow changes of light and colour across the crop, which are taken out before the synthesis, back in "
+        "afterwards. Only for a texture of the crop's own size; it then no longer tiles without a seam.",
+        json_schema_extra=ADVANCED,
+    )
+
+
+def _check(sizes: Sequence[Size], params: RandomPhaseParams) -> None:
+    """Refuse what cannot run: the smooth component has the crop's size and no other."""
+    size = sizes[0]
+    width, height = params.width or size.width, params.height or size.height
+    if params.add_smooth and (width, height) != (size.width, size.height):
+        raise InvalidInputError(
+            f"The smooth component can be added only to a texture of the crop's own size, {size.width} × {size.height} pixels, "
+            f"and {width} × {height} is asked for: take that size, or leave the smooth component out.",
+            "parameters.add_smooth",
+        )
+
+
+class _Run:
+    """One run: makes its pictures one by one."""
+
+    def __init__(self, source: Source, params: RandomPhaseParams, context: Context, team: Team, rayleigh: bool) -> None:
+        self._source, self._params, self._context, self._team = source, params, context, team
+        self._height, self._width = params.height or source.pixels.shape[0], params.width or source.pixels.shape[1]
+        self._noise = Noise(
+            self._height,
+            self._width,
+            seed=params.seed,
+            rayleigh=rayleigh,
+            phase=params.phase,
+            alpha=params.alpha,
+            window=params.window,
+            add_smooth=params.add_smooth,
+        )
+        self._peak = 2**context.depth - 1
+
+    def texture(self) -> Picture:
+        field = self._field(0.0, {"spot": 0.1, "random phase": 0.4, "range": 0.55, "texture": 0.8}).randomise()
+        low, high = 0.0, float(self._source.peak)
+        if self._params.range == "stretch":
+            extent = Extent(self._source.peak)
+            field.emit(extent, "range")
+            low, high = extent.low, extent.high
+        writer = PngWriter(self._width, self._height, len(field.mean), self._context.depth)
+        field.emit(Levels(writer.write, low, high, self._peak))
+        return Picture("texture", "Texture", self._width, self._height, writer.finish())
+
+    def _field(self, start: float, ends: dict[str, float]) -> Field:
+        """The noise's field, which tells the progress of its stages; each goes from the stage before it to its own end."""
+        begins = dict(zip(ends, [start, *ends.values()], strict=False))
+
+        def progress(stage: str, part: float) -> None:
+            self._context.progress(stage, begins[stage] + part * (ends[stage] - begins[stage]))
+
+        return Field(self._source.pixels, self._noise, self._team, self._context.threads, progress)
+
+    def pictures(self) -> Iterator[Picture]:
+        yield self.texture()
+        h = self._source.pixels
+        yield self._picture("crop", "Crop", h, 0.82)
+        h = centre(h, self._height, self._width)
+        mean = h.mean(axis=(0, 1), dtype=np.float64)
+        smooth = smooth_component(h, self._context.threads)
+        p = h - smooth
+        yield self._picture("periodic", "Periodic component", p, 0.84)
+        yield self._picture("smooth", "Smooth component, the mean added", smooth + mean.astype(np.float32), 0.86)
+        del smooth
+        if p.shape[:2] == (self._height, self._width):
+            yield self._picture("spot", "Spot", p, 0.88)
+        else:
+            spot = spot_of(p, mean, self._height, self._width, self._params.alpha, self._params.window)
+            yield self._write("spot", "Extended spot", self._height, self._width, spot.rows, 0.88)
+        del p
+        spectrum = periodic_spectrum(h)
+        power = np.einsum("yxc,yxc->yx", spectrum, spectrum.conj()).real / spectrum.shape[2]
+        del spectrum
+        yield self._spectrum("input-spectrum", "Log-modulus of the periodic component", power, h.shape[1], 0.9)
+        power = self._field(0.9, {"spot": 0.92, "output spectrum": 0.98}).power()
+        yield self._spectrum("output-spectrum", "Log-modulus of the texture", power, self._width, 1.0)
+
+    def _picture(self, name: str, title: str, values: NDArray[np.float32], end: float) -> Picture:
+        height, width = values.shape[:2]
+        return self._write(name, title, height, width, lambda first, last: values[first:last], end)
+
+    def _write(
+        self,
+        name: str,
+        title: str,
+        height: int,
+        width: int,
+        rows: Callable[[int, int], NDArray[np.float32]],
+        end: float,
+    ) -> Picture:
+        """A picture of float rows (n, W, C) in the sample's range, cut off outside it."""
+        writer = PngWriter(width, height, self._source.pixels.shape[2], self._context.depth)
+        levels = Levels(writer.write, 0, self._source.peak, self._peak)
+
+        def write(block: tuple[int, int]) -> None:
+            levels(block[0], np.array(rows(*block).transpose(2, 0, 1), order="C"))
+
+        self._team.run(write, row_blocks(height), lambda part: self._context.progress(name, end - 0.02 * (1 - part)))
+        return Picture(name, title, width, height, writer.finish())
+
+    def _spectrum(self, name: str, title: str, power: NDArray[np.float32], width: int, end: float) -> Picture:
+        writer = PngWriter(width, len(power), 1, 8)
+
+        def write(block: tuple[int, int]) -> None:
+            writer.write(block[0], log_modulus(power, width, *block)[:, :, None])
+
+        self._team.run(
+            write, row_blocks(len(power)), lambda part: self._context.progress(name, end - 0.02 * (1 - part))
+        )
+        return Picture(name, title, width, len(power), writer.finish())
+
+
+def _run(
+    sources: Sequence[Source], params: RandomPhaseParams, context: Context, *, rayleigh: bool
+) -> Iterator[Picture]:
+    source = sources[0]
+    _check([Size(source.pixels.shape[1], source.pixels.shape[0], source.pixels.shape[2])], params)
+    if not np.isfinite(source.pixels).all():
+        raise InvalidInputError("The crop holds values that are not finite numbers: save the picture anew.", "inputs.0")
+    with Team(context.threads) as team:
+        yield from _Run(source, params, context, team, rayleigh).pictures()
+
+
+_INPUTS = (Slot("sample", "Sample", "A photograph; crop a homogeneous region of it."),)
+_IPOL = Reference(
+    "B. Galerne, Y. Gousseau, J.-M. Morel",
+    "Micro-Texture Synthesis by Phase Randomization",
+    "Image Processing On Line 1",
+    2011,
+    "https://doi.org/10.5201/ipol.2011.ggm_rpn",
+)
+_TIP = Reference(
+    "B. Galerne, Y. Gousseau, J.-M. Morel",
+    "Random Phase Textures: Theory and Synthesis",
+    "IEEE Transactions on Image Processing 20(1)",
+    2011,
+    "https://doi.org/10.1109/TIP.2010.2052822",
+)
+_MOISAN = Reference(
+    "L. Moisan",
+    "Periodic plus Smooth Image Decomposition",
+    "Journal of Mathematical Imaging and Vision 39(2)",
+    2011,
+    "https://doi.org/10.1007/s10851-010-0227-1",
+)
+
+RPN = Method(
+    name="rpn",
+    title="Random phase noise (RPN)",
+    summary="Keeps the Fourier modulus of the crop and draws its phase at random.",
+    inputs=_INPUTS,
+    params=RandomPhaseParams,
+    references=(_IPOL, _TIP, _MOISAN),
+    check=_check,
+    run=partial(_run, rayleigh=False),
+)
+ADSN = Method(
+    name="adsn",
+    title="Asymptotic discrete spot noise (ADSN)",
+    summary="The Gaussian texture that has the crop's mean and covariance.",
+    inputs=_INPUTS,
+    params=RandomPhaseParams,
+    references=(_TIP, _IPOL, _MOISAN),
+    check=_check,
+    run=partial(_run, rayleigh=True),
+)

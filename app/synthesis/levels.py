@@ -1,0 +1,54 @@
+"""From float values to the whole numbers of a picture: cut off, or stretch; never wrap."""
+
+import threading
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+Real = NDArray[np.float32]
+Rows = Callable[[int, NDArray[np.unsignedinteger]], None]
+
+
+class Extent:
+    """A sink that only looks: ``low`` and ``high`` are the least and greatest values seen, and at least [0, peak]."""
+
+    def __init__(self, peak: float) -> None:
+        self.low, self.high = 0.0, float(peak)
+        self._lock = threading.Lock()
+
+    def __call__(self, first: int, block: Real) -> None:
+        low, high = float(block.min()), float(block.max())
+        with self._lock:
+            self.low, self.high = min(self.low, low), max(self.high, high)
+
+
+class Levels:
+    """A sink that rounds values of [low, high] to the whole numbers 0 … peak, cutting off what is outside.
+
+    With [low, high] = [0, the sample's peak] values keep their place and those outside are cut off. With an `Extent`'s, the histogram
+    is stretched: the same affine map for all channels takes everything into the range, and is the identity if nothing was outside.
+
+    Parameters
+    ----------
+    rows : callable ``(first row, block)``
+        Gets blocks (n, W, C), contiguous, uint8 or uint16 as ``peak`` asks for, valid only during the call.
+    low, high : float
+        What becomes 0 and ``peak``.
+    peak : int
+        255 or 65535.
+    """
+
+    def __init__(self, rows: Rows, low: float, high: float, peak: int) -> None:
+        self._rows = rows
+        self._scale = np.float32(peak / (high - low))
+        self._shift = np.float32(0.5 - low * peak / (high - low))
+        self._limit = np.float32(peak + 0.5)
+        self._type = np.uint8 if peak == 255 else np.uint16
+
+    def __call__(self, first: int, block: Real) -> None:
+        if self._scale != 1:
+            block *= self._scale
+        block += self._shift
+        np.clip(block, 0, self._limit, out=block)
+        self._rows(first, np.ascontiguousarray(block.astype(self._type).transpose(1, 2, 0)))

@@ -1,0 +1,134 @@
+"""Moisan's decomposition h = p + s of an image into a periodic and a smooth component, through the Poisson problem.
+
+p is the solution of Δp = Δᵢh with mean p = mean h, where Δf(x) is the sum over the four neighbours y of f(x) − f(y), taken on the
+torus, and Δᵢ is the same with the neighbours inside the image only. Their difference v = Δh − Δᵢh lives on the border: it is the
+jump between opposite sides. So Δs = v, and in the Fourier domain
+
+    ŝ(k) = v̂(k) / (4 sin²(π k₁/H) + 4 sin²(π k₂/W)),   ŝ(0) = 0,   p̂ = ĥ − ŝ,
+
+which needs one forward transform of h, and, because v is two lines along each axis, only two transforms of *lines* for v̂:
+
+    v̂(k) = ĵ(k₂) (1 − exp(2πi k₁/H)) + ĵ'(k₁) (1 − exp(2πi k₂/W)),
+
+with j(x) = h(0, x) − h(H − 1, x) and j'(y) = h(y, 0) − h(y, W − 1). Dividing the jumps alone, and not Δᵢh, by the small denominators
+of low frequencies keeps single precision accurate there.
+
+References
+----------
+Moisan, "Periodic plus smooth image decomposition", JMIV 2011; Galerne, Gousseau, Morel, "Random Phase Textures: Theory and
+Synthesis", IEEE TIP 2011, equation 3.
+"""
+
+from functools import lru_cache
+
+import numpy as np
+import scipy.fft
+from numpy.typing import NDArray
+
+Complex = NDArray[np.complex64]
+Real = NDArray[np.float32]
+
+
+@lru_cache(maxsize=32)
+def _axis(length: int, count: int) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
+    """``1 − exp(2πi k/length)`` and ``4 sin²(π k/length)`` for k = 0 … count − 1."""
+    k = np.arange(count)
+    return 1 - np.exp(2j * np.pi * k / length), 4 * np.sin(np.pi * k / length) ** 2
+
+
+class SmoothSpectrum:
+    """ŝ of an image (H, W, C), one block of columns of the half spectrum at a time."""
+
+    def __init__(self, h: Real) -> None:
+        self._height, self._width = h.shape[:2]
+        self._rows_jump = scipy.fft.rfft(h[0].T - h[-1].T)[:, None, :]
+        self._columns_jump = scipy.fft.fft(h[:, 0].T - h[:, -1].T)[:, :, None]
+
+    def block(self, first: int, last: int) -> Complex:
+        """Columns ``first`` to ``last`` − 1 of ŝ, shape (C, H, last − first)."""
+        down, sines = _axis(self._height, self._height)
+        across, cross_sines = _axis(self._width, self._width // 2 + 1)
+        denominator = sines[:, None] + cross_sines[None, first:last]
+        if first == 0:
+            denominator[0, 0] = np.inf
+        by_rows = (down[:, None] / denominator).astype(np.complex64)
+        by_columns = (across[None, first:last] / denominator).astype(np.complex64)
+        smooth: Complex = self._rows_jump[:, :, first:last] * by_rows
+        smooth += self._columns_jump * by_columns
+        return smooth
+
+    def whole(self) -> Complex:
+        """All of ŝ, shape (C, H, W // 2 + 1)."""
+        return self.block(0, self._width // 2 + 1)
+
+
+def periodic_spectrum(h: Real) -> Complex:
+    """Half spectrum p̂ of the periodic component.
+
+    Parameters
+    ----------
+    h : ndarray of float32, shape (H, W) or (H, W, C)
+
+    Returns
+    -------
+    ndarray of complex64, shape (H, W // 2 + 1) or (H, W // 2 + 1, C)
+        As `scipy.fft.rfft2` over the first two axes would give it.
+    """
+    if h.ndim == 2:
+        return periodic_spectrum(h[:, :, None])[:, :, 0]
+    spectrum: Complex = scipy.fft.rfft2(h, axes=(0, 1))
+    spectrum -= SmoothSpectrum(h).whole().transpose(1, 2, 0)
+    return spectrum
+
+
+def smooth_component(h: Real, threads: int = 1) -> Real:
+    """Smooth component s = h − p; its mean is 0.
+
+    Parameters
+    ----------
+    h : ndarray of float32, shape (H, W) or (H, W, C)
+    threads : int
+        For the transform.
+
+    Returns
+    -------
+    ndarray of float32, the shape of ``h``
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> ramp = np.tile(np.arange(8, dtype=np.float32), (4, 1))
+    >>> bool(np.abs(smooth_component(ramp).mean()) < 1e-5)
+    True
+    """
+    if h.ndim == 2:
+        return smooth_component(h[:, :, None], threads)[:, :, 0]
+    height, width = h.shape[:2]
+    planes: Real = scipy.fft.irfft2(SmoothSpectrum(h).whole(), s=(height, width), overwrite_x=True, workers=threads)
+    return np.ascontiguousarray(planes.transpose(1, 2, 0))
+
+
+def periodic_component(h: Real, threads: int = 1) -> Real:
+    """Periodic component p of an image: what is left of it without the jumps between opposite borders.
+
+    No transform of ``h`` itself is needed: p = h − s.
+
+    Parameters
+    ----------
+    h : ndarray of float32, shape (H, W) or (H, W, C)
+    threads : int
+        For the transform.
+
+    Returns
+    -------
+    ndarray of float32, the shape of ``h``
+
+    Examples
+    --------
+    A constant image is its own periodic component.
+
+    >>> import numpy as np
+    >>> bool((periodic_component(np.full((5, 7), 9, np.float32)) == 9).all())
+    True
+    """
+    return h - smooth_component(h, threads)

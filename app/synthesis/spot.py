@@ -1,0 +1,144 @@
+"""Spot extension: a sample pasted into a larger image so that the noise of both has the same mean, variance and look.
+
+    h̃ = m + sqrt(M₂N₂ / (M₁N₁)) · φ_α · (p − m)
+
+on a centred rectangle of the sample's size, and m elsewhere.
+
+References
+----------
+Galerne, Gousseau, Morel, "Random Phase Textures: Theory and Synthesis", IEEE TIP 2011, equation 4 and figure 9 (the Gaussian
+profile); Galerne, Gousseau, Morel, "Micro-Texture Synthesis by Phase Randomization", IPOL 2011, "Spot Extension Technique".
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Real = NDArray[np.float32]
+Profile = Literal["bump", "gaussian"]
+
+
+@lru_cache(maxsize=64)
+def window(n: int, alpha: float, profile: Profile = "bump") -> NDArray[np.float64]:
+    """The smooth transition φ_α at the n points t = (i + ½) / n, its mean square being 1.
+
+    φ_α rises on [0, α], is constant on [α, 1 − α] and falls as it rose. On [0, α] it is
+
+    - ``bump``: proportional to the primitive of ``exp(−1 / (1 − (2t/α − 1)²))`` (IPOL article);
+    - ``gaussian``: proportional to ``exp(−(α − t)² / (2σ²))`` with σ = α/4 (TIP article, figure 9).
+
+    Parameters
+    ----------
+    n : int
+        Points, at least 1.
+    alpha : float
+        0 (no transition at all) to 0.5.
+    profile : {"bump", "gaussian"}
+
+    Returns
+    -------
+    ndarray of float64, shape (n,)
+        Not to be written to.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> phi = window(256, 0.1)
+    >>> bool(np.isclose((phi**2).mean(), 1)), bool((phi[26:-26] == phi[128]).all())
+    (True, True)
+    """
+    t = (np.arange(n) + 0.5) / n
+    t = np.minimum(t, t[::-1])
+    if alpha == 0:
+        phi = np.ones(n)
+    elif profile == "bump":
+        u = np.linspace(-1, 1, 4097)
+        bump = np.exp(-1 / np.maximum(1 - u**2, 1e-3))
+        bump[[0, -1]] = 0
+        primitive = np.concatenate([[0], np.cumsum(bump[1:] + bump[:-1])])
+        phi = np.interp(2 * t / alpha - 1, u, primitive / primitive[-1])
+    else:
+        phi = np.exp(-8 * np.maximum(1 - t / alpha, 0) ** 2)
+    phi /= np.sqrt((phi**2).mean())
+    phi.flags.writeable = False
+    return phi
+
+
+def centre(h: Real, height: int, width: int) -> Real:
+    """The centre of an image, at most ``height`` × ``width`` pixels of it (a view)."""
+    top, left = max(0, (h.shape[0] - height) // 2), max(0, (h.shape[1] - width) // 2)
+    return h[top : top + height, left : left + width]
+
+
+@dataclass(frozen=True)
+class Spot:
+    """An extended spot without the constant around its rectangle.
+
+    ``values`` (M₁, N₁, C) is h̃ − m on the rectangle whose first pixel is (``top``, ``left``) of an image of ``height`` × ``width``;
+    ``mean`` is m, shape (C,).
+    """
+
+    values: Real
+    mean: NDArray[np.float64]
+    height: int
+    width: int
+
+    @property
+    def top(self) -> int:
+        return (self.height - self.values.shape[0]) // 2
+
+    @property
+    def left(self) -> int:
+        return (self.width - self.values.shape[1]) // 2
+
+    def rows(self, first: int, last: int) -> Real:
+        """Rows ``first`` to ``last`` − 1 of h̃, shape (last − first, width, C)."""
+        high, wide, channels = self.values.shape
+        rows = np.empty((last - first, self.width, channels), np.float32)
+        rows[:] = self.mean
+        begin, end = max(first, self.top), min(last, self.top + high)
+        if begin < end:
+            rows[begin - first : end - first, self.left : self.left + wide] += self.values[
+                begin - self.top : end - self.top
+            ]
+        return rows
+
+
+def spot_of(p: Real, mean: NDArray[np.float64], height: int, width: int, alpha: float, profile: Profile) -> Spot:
+    """`extend_spot` without the constant around: what the synthesis transforms."""
+    high, wide = p.shape[:2]
+    gain = np.sqrt(height * width / (high * wide))
+    down = window(high, alpha, profile) if height > high else np.ones(high)
+    across = window(wide, alpha, profile) if width > wide else np.ones(wide)
+    values = (p - mean.astype(np.float32)) * (gain * down[:, None, None] * across[None, :, None]).astype(np.float32)
+    return Spot(values, mean, height, width)
+
+
+def extend_spot(
+    p: Real, mean: NDArray[np.float64], height: int, width: int, alpha: float = 0.1, profile: Profile = "bump"
+) -> Real:
+    """The extended spot h̃ of a periodic component.
+
+    An axis that is not extended is not attenuated. The mean square of φ_α is 1 along each extended axis, so the variance of h̃ is
+    that of p as far as p is homogeneous.
+
+    Parameters
+    ----------
+    p : ndarray of float32, shape (M₁, N₁, C)
+        Periodic component; no axis longer than the output's. (A sample that is larger than the output along an axis is replaced by
+        its centre *before* its periodic component is taken, see `centre`: mean and variance are then those of the centre.)
+    mean : ndarray of float64, shape (C,)
+        Mean of every channel.
+    height, width : int
+        Size M₂ × N₂ of the output.
+    alpha, profile
+        As in `window`.
+
+    Returns
+    -------
+    ndarray of float32, shape (height, width, C)
+    """
+    return spot_of(p, mean, height, width, alpha, profile).rows(0, height)

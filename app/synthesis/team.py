@@ -1,0 +1,43 @@
+"""A few threads that share out blocks of work; numpy and scipy release the interpreter's lock inside them."""
+
+from collections.abc import Callable, Iterable
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from types import TracebackType
+from typing import TypeVar
+
+T = TypeVar("T")
+
+
+class Team:
+    """A pool of ``threads`` threads, to be used in a ``with`` statement."""
+
+    def __init__(self, threads: int) -> None:
+        self._pool = ThreadPoolExecutor(max(1, threads), thread_name_prefix="synthesis")
+
+    def __enter__(self) -> "Team":
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
+        self._pool.shutdown(wait=True, cancel_futures=True)
+
+    def run(self, task: Callable[[T], object], items: Iterable[T], done: Callable[[float], None]) -> None:
+        """Call ``task(item)`` for every item in the pool, and ``done(part)`` in this thread after each, ``part`` going to 1.
+
+        If a task or ``done`` raises, the tasks that have not begun are dropped, and the error is raised once the running
+        ones have ended.
+        """
+        waiting: set[Future[object]] = {self._pool.submit(task, item) for item in items}
+        total = len(waiting)
+        try:
+            while waiting:
+                finished, waiting = wait(waiting, return_when=FIRST_COMPLETED)
+                for future in finished:
+                    future.result()
+                done(1 - len(waiting) / total)
+        except BaseException:
+            for future in waiting:
+                future.cancel()
+            wait(waiting)
+            raise
