@@ -1,13 +1,189 @@
-"""The pages a person sees: home, sample, archive and errors. They work without JavaScript; the modules in `static/js` make them better."""
+"""Home, sample, archive and error pages; they work without JavaScript, the modules in `static/js` make them better."""
+
+from urllib.parse import urlencode
 
 from fastapi import APIRouter, Request
+from fastapi.responses import RedirectResponse
+from starlette.concurrency import run_in_threadpool
+from starlette.datastructures import FormData
 from starlette.responses import Response
 
+from app.errors import AppError, InvalidInputError
+from app.experiments.model import Sample
+from app.experiments.ownership import new_token
+from app.experiments.service import Service
+from app.methods.model import Method, StillParams
+from app.methods.registry import METHODS, method
+from app.samples import BundledSample, bundled
+from app.settings import Settings
+from app.web import experiment_pages
+from app.web.deps import (
+    ServiceDep,
+    SettingsDep,
+    TokenDep,
+    in_upload_thread,
+    remember_owner,
+)
+from app.web.drafts import SIZES, Draft, opened, refused, sent
+from app.web.forms import fields, form_name, own_fields
+from app.web.problems import STATUS
 from app.web.templating import render
+from app.web.uploads import receive_form
+
+NEWEST = 8
+PER_PAGE = 24
+TRAIL = 30  # pages of the archive that "Newer" finds its way back through
+
+WORDS = {
+    403: "This is not yours",
+    404: "There is nothing here",
+    405: "This address does not do that",
+    409: "It is too late for that",
+    410: "This was deleted",
+    413: "This is too large",
+    415: "This is not a photograph",
+    422: "This does not fit",
+    500: "Something went wrong on our side",
+    503: "All hands are busy",
+}
+SEE_OTHER = 303  # the answer to a form that was taken: go and look, and do not send it again on reload
 
 router = APIRouter(include_in_schema=False)
+router.include_router(experiment_pages.router)
 
 
 def render_error(request: Request, status: int, title: str, detail: str) -> Response:
-    """The page that says what went wrong and where to go from here."""
-    return render(request, "error.html", {"status": status, "title": title, "detail": detail}, status)
+    """Show what went wrong and where to go from here; ``title`` is the protocol's name for it."""
+    return render(
+        request, "error.html", {"status": status, "title": WORDS.get(status, title), "detail": detail}, status
+    )
+
+
+def status_of(error: AppError) -> int:
+    """Give the HTTP status of an error's meaning."""
+    return next(STATUS[kind] for kind in type(error).__mro__ if kind in STATUS)
+
+
+@router.get("/")
+def home(request: Request, service: ServiceDep, settings: SettingsDep) -> Response:
+    return _home(request, service, settings)
+
+
+def _home(
+    request: Request, service: Service, settings: Settings, error: str | None = None, status: int = 200
+) -> Response:
+    context = {
+        "limit": settings.max_upload_bytes,
+        "samples": service.bundled_samples(),
+        "newest": service.page(limit=NEWEST).experiments,
+        "upload_error": error,
+    }
+    return render(request, "home.html", context, status)
+
+
+@router.post("/samples")
+async def upload(request: Request, service: ServiceDep, settings: SettingsDep, token: TokenDep) -> Response:
+    owner = token or new_token()
+    try:
+        async with receive_form(request) as form:
+            if form.file is None:
+                raise InvalidInputError("Choose a photograph first: a PNG, JPEG, WebP or TIFF file.", "file")
+            sample = await in_upload_thread(request, service.add_sample, form.file, owner)
+    except AppError as error:
+        return await run_in_threadpool(_home, request, service, settings, error.message, status_of(error))
+    response = RedirectResponse(f"/samples/{sample.id}", SEE_OTHER)
+    remember_owner(request, response, owner)
+    return response
+
+
+@router.get("/samples/{sample_id}")
+def sample_page(request: Request, sample_id: str, service: ServiceDep, settings: SettingsDep) -> Response:
+    sample = service.sample(sample_id)
+    entry = _bundled(settings, sample)
+    return _sample(request, sample, opened(sample, entry and entry.crop, request.query_params), entry)
+
+
+def _bundled(settings: Settings, sample: Sample) -> BundledSample | None:
+    entries = bundled(settings.samples_dir) if sample.bundled else []
+    return next((entry for entry in entries if entry.id == sample.id), None)
+
+
+def _sample(request: Request, sample: Sample, draft: Draft, entry: BundledSample | None, status: int = 200) -> Response:
+    own = {name: own_fields(declared) for name, declared in METHODS.items()}
+
+    def stands_out(declared: Method) -> bool:
+        names = [(form_name(declared, field.name), field) for field in own[declared.name] if field.advanced]
+        return any(name in draft.errors or draft.values.get(name, "") != field.default for name, field in names)
+
+    context = {
+        "sample": sample,
+        "bundled": entry,
+        "draft": draft,
+        "methods": METHODS.values(),
+        "own": own,
+        "opened": {name: stands_out(declared) for name, declared in METHODS.items()},
+        "shared": fields(StillParams),
+        "sizes": SIZES,
+        "summary_title": WORDS[503] if status == 503 else "Please look at this again",
+        "targets": {"crop": "crop-x", "method": f"method-{next(iter(METHODS))}"},
+    }
+    return render(request, "sample.html", context, status)
+
+
+@router.get("/experiments")
+def experiments() -> Response:
+    """Lead who reloads after a refused form, or shortens an address, to the list of experiments."""
+    return RedirectResponse("/archive")
+
+
+@router.post("/experiments")
+async def submit(request: Request, service: ServiceDep, settings: SettingsDep, token: TokenDep) -> Response:
+    values = _texts(await request.form())
+    return await run_in_threadpool(_submit, request, service, settings, token, values)
+
+
+def _submit(
+    request: Request, service: Service, settings: Settings, token: str | None, values: dict[str, str]
+) -> Response:
+    sample = service.sample(values.get("sample", ""))
+    read = sent(sample, values, listed=not values.get("unlisted"))
+    if read.request is None:
+        return _sample(request, sample, read.draft, _bundled(settings, sample), 422)
+    owner = token or new_token()
+    try:
+        experiment = service.submit(read.request, owner)
+    except AppError as error:
+        draft = refused(read.draft, method(read.request.method), error)
+        return _sample(request, sample, draft, _bundled(settings, sample), status_of(error))
+    response = RedirectResponse(f"/experiments/{experiment.id}", SEE_OTHER)
+    remember_owner(request, response, owner)
+    return response
+
+
+def _texts(form: FormData) -> dict[str, str]:
+    return {name: value for name, value in form.items() if isinstance(value, str)}
+
+
+@router.get("/archive")
+def archive(
+    request: Request, service: ServiceDep, method: str | None = None, cursor: str | None = None, trail: str = ""
+) -> Response:
+    """List what is public; ``trail`` holds the cursors of the pages passed, for keyset paging only goes onwards."""
+    chosen = method if method in METHODS else None
+    page = service.page(limit=PER_PAGE, cursor=cursor, method=chosen)
+    passed = [part for part in trail.split(" ") if part]
+
+    def address(to: str | None, through: list[str]) -> str:
+        query = {"method": chosen, "cursor": to, "trail": " ".join(through[-TRAIL:])}
+        said = urlencode({name: value for name, value in query.items() if value})
+        return f"/archive?{said}" if said else "/archive"
+
+    context = {
+        "experiments": page.experiments,
+        "methods": METHODS.values(),
+        "chosen": chosen,
+        "paged": bool(cursor),
+        "older": address(page.cursor, [*passed, cursor] if cursor else []) if page.cursor else None,
+        "newer": address(passed[-1] if passed else None, passed[:-1]) if cursor else None,
+    }
+    return render(request, "archive.html", context)

@@ -16,7 +16,7 @@ TEMPLATES.env.lstrip_blocks = True
 
 
 def render(request: Request, template: str, context: Mapping[str, Any], status: int = 200) -> Response:
-    """The page `template` with `context`; pages change with every experiment, so nothing keeps a copy without asking."""
+    """Fill a page in. Pages change with every experiment, so nothing keeps a copy of one without asking."""
     response = TEMPLATES.TemplateResponse(request, template, dict(context), status_code=status)
     response.headers["Cache-Control"] = "no-cache"
     return response

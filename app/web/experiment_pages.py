@@ -1,0 +1,251 @@
+"""The page of an experiment in all its states, two experiments side by side, and what their buttons do."""
+
+import secrets
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal
+from urllib.parse import urlencode
+
+from fastapi import APIRouter, Form, Query, Request
+from fastapi.responses import FileResponse, RedirectResponse
+from starlette.responses import Response
+
+from app.errors import NotFoundError
+from app.experiments.model import Experiment, Status
+from app.experiments.ownership import new_token
+from app.experiments.service import Service
+from app.experiments.submission import NewExperiment, NewInput
+from app.methods.model import Method
+from app.methods.registry import METHODS, method
+from app.web.deps import ServiceDep, TokenDep, base_url, remember_owner
+from app.web.drafts import address
+from app.web.forms import fields
+from app.web.snippets import snippets
+from app.web.templating import render
+
+SEE_OTHER = 303  # the answer to a form that was taken: go and look, and do not send it again on reload
+SEEDS = 1_000_000  # new seeds are below this: few enough digits to read them aloud
+
+View = Annotated[Literal["side", "flip", "slider", "tiled", "steps"], Query()]
+Tiles = Annotated[int, Query(ge=2, le=3)]
+
+router = APIRouter(include_in_schema=False)
+
+
+@dataclass(frozen=True)
+class Pane:
+    """One picture of the viewer; ``page`` is where its title leads."""
+
+    title: str
+    url: str
+    width: int
+    height: int
+    note: str = ""
+    page: str = ""
+
+
+def _pane(experiment: Experiment, name: str, title: str, **rest: str) -> Pane:
+    output = experiment.output(name)
+    if output is None:
+        raise NotFoundError(f"The experiment {experiment.id} has no picture “{name}”.")
+    url = f"/api/v1/experiments/{experiment.id}/outputs/{name}"
+    return Pane(title, url, output.width, output.height, **rest)
+
+
+def _page(experiment: Experiment) -> str:
+    return f"/experiments/{experiment.id}"
+
+
+@router.get("/experiments/{experiment_id}")
+def experiment_page(
+    request: Request,
+    experiment_id: str,
+    service: ServiceDep,
+    token: TokenDep,
+    view: View = "side",
+    tiles: Tiles = 2,
+) -> Response:
+    experiment = service.get(experiment_id)
+    declared = method(experiment.method)
+    base = base_url(request)
+    context = _common(service, experiment, token) | {
+        "title": f"{experiment.method.upper()} of {_sample_title(service, experiment)}",
+        "view": view,
+        "tiles": tiles,
+        "url": f"{base}/experiments/{experiment.id}",
+        "preview": None,
+    }
+    if experiment.status is Status.SUCCEEDED:
+        context |= {
+            "preview": f"{base}/experiments/{experiment.id}/preview",
+            "panes": [
+                _pane(experiment, "crop", "Sample"),
+                _pane(experiment, "texture", experiment.method.upper()),
+            ],
+            "steps": list(_steps(experiment)),
+            "others": [other for other in METHODS.values() if other.name != declared.name and _fits(other, declared)],
+            "downloads": list(_downloads(experiment)),
+            "timings": list(_timings(experiment)),
+            "snippets": snippets(experiment, base),
+        }
+    return render(request, "experiment.html", context)
+
+
+def _common(service: Service, experiment: Experiment, token: str | None) -> dict[str, Any]:
+    declared = method(experiment.method)
+    return {
+        "experiment": experiment,
+        "snapshot": service.snapshot(experiment.id),
+        "method": declared,
+        "sample": service.sample(experiment.inputs[0].sample),
+        "sample_title": _sample_title(service, experiment),
+        "owned": service.owns(experiment, token),
+        "rows": list(_rows(experiment)),
+        "edit_url": f"/samples/{experiment.inputs[0].sample}?{urlencode(address(experiment), safe=',')}",
+    }
+
+
+def _sample_title(service: Service, experiment: Experiment) -> str:
+    title = service.sample(experiment.inputs[0].sample).title
+    return title.lower() if title else "a photograph"
+
+
+def _rows(experiment: Experiment) -> Iterator[tuple[str, str]]:
+    """Give every parameter with the label its form has, for people."""
+    words = {True: "yes", False: "no"}
+    for entry in fields(method(experiment.method).params):
+        value = experiment.parameters.get(entry.name)
+        yield entry.label, words[value] if isinstance(value, bool) else str(value)
+
+
+def _steps(experiment: Experiment) -> Iterator[Pane]:
+    for output in experiment.outputs:
+        if output.listed:
+            yield _pane(experiment, output.name, output.title)
+
+
+def _downloads(experiment: Experiment) -> Iterator[tuple[str, str, str]]:
+    address = f"/api/v1/experiments/{experiment.id}/outputs"
+    stem = f"{experiment.method}-{experiment.id}"
+    yield "PNG, 8 bit", f"{address}/texture?format=png&depth=8", f"{stem}.png"
+    yield "PNG, 16 bit", f"{address}/texture?format=png&depth=16", f"{stem}-16.png"
+    for name, extension in (("JPEG", "jpg"), ("WebP", "webp"), ("TIFF", "tiff")):
+        yield name, f"{address}/texture?format={name.lower()}", f"{stem}.{extension}"
+    yield "Everything, ZIP", f"{address}.zip", f"{stem}.zip"
+
+
+def _timings(experiment: Experiment) -> Iterator[tuple[str, str, str]]:
+    longest = max(experiment.timings.values(), default=0.0)
+    for stage, seconds in experiment.timings.items():
+        shown = f"{seconds * 1000:.0f} ms" if seconds < 1 else f"{seconds:.1f} s"
+        yield stage, shown, f"{100 * seconds / longest if longest else 0:.1f}"
+
+
+def _fits(other: Method, declared: Method) -> bool:
+    return len(other.inputs) == len(declared.inputs)
+
+
+@router.get("/experiments/{experiment_id}/thumbnail/{name}")
+def thumbnail(experiment_id: str, name: Literal["crop", "texture"], service: ServiceDep) -> Response:
+    return _hidden(service, experiment_id, f".thumbnail-{name}")
+
+
+@router.get("/experiments/{experiment_id}/preview")
+def preview(experiment_id: str, service: ServiceDep) -> Response:
+    return _hidden(service, experiment_id, ".preview")
+
+
+def _hidden(service: Service, experiment_id: str, name: str) -> Response:
+    output, path = service.output(experiment_id, name)
+    headers = {"Cache-Control": "private, max-age=3600"}  # not for ever: its owner may delete it
+    return FileResponse(path, media_type=output.media_type, headers=headers)
+
+
+@router.get("/compare/{first_id}/{second_id}")
+def compare(
+    request: Request,
+    first_id: str,
+    second_id: str,
+    service: ServiceDep,
+    token: TokenDep,
+    view: View = "side",
+    tiles: Tiles = 2,
+) -> Response:
+    """Show two experiments beside the sample of the first; one that still runs shows its progress until it is there."""
+    both = [service.get(first_id), service.get(second_id)]
+    first, second = both
+    names = [experiment.method.upper() for experiment in both]
+    same_crop = first.inputs == second.inputs
+    context: dict[str, Any] = {
+        "title": f"{' and '.join(names)} of {_sample_title(service, first)}",
+        "same_phase": same_crop and first.parameters["seed"] == second.parameters["seed"],
+        "base": f"/compare/{first.id}/{second.id}",
+        "view": "side" if view == "steps" else view,
+        "tiles": tiles,
+    }
+    unfinished = next((experiment for experiment in both if experiment.status is not Status.SUCCEEDED), None)
+    if unfinished is not None:
+        context |= _common(service, unfinished, token) | {"unfinished": True, "others": []}
+        return render(request, "compare.html", context)
+    panes = [_pane(first, "crop", "Sample")]
+    if not same_crop:
+        panes.append(_pane(second, "crop", "Other sample"))
+    panes += [
+        _pane(
+            experiment,
+            "texture",
+            name,
+            note=f"seed {experiment.parameters['seed']}",
+            page=f"/experiments/{experiment.id}",
+        )
+        for experiment, name in zip(both, names, strict=True)
+    ]
+    labels = {label: None for experiment in both for label, _ in _rows(experiment)}
+    rows = [(label, [dict(_rows(experiment)).get(label, "–") for experiment in both]) for label in labels]
+    return render(request, "compare.html", context | {"panes": panes, "experiments": both, "rows": rows})
+
+
+@router.post("/experiments/{experiment_id}/again")
+def again(
+    request: Request,
+    experiment_id: str,
+    service: ServiceDep,
+    token: TokenDep,
+    name: Annotated[str, Form(alias="method")],
+    seed: Annotated[str, Form()] = "",
+) -> Response:
+    """Run the same crop once more: with a new seed, or by another method at the same phase."""
+    experiment = service.get(experiment_id)
+    known = method(name).params.model_fields
+    parameters = {key: value for key, value in experiment.parameters.items() if key in known}
+    if seed == "new":
+        parameters["seed"] = secrets.randbelow(SEEDS)
+    inputs = tuple(NewInput(source.sample, source.crop) for source in experiment.inputs)
+    owner = token or new_token()
+    run = service.submit(NewExperiment(name, inputs, parameters, experiment.listed), owner)
+    other = name != experiment.method
+    response = RedirectResponse(f"/compare/{experiment.id}/{run.id}" if other else f"/experiments/{run.id}", SEE_OTHER)
+    remember_owner(request, response, owner)
+    return response
+
+
+@router.post("/experiments/{experiment_id}/cancel")
+def cancel(experiment_id: str, service: ServiceDep, token: TokenDep) -> Response:
+    """Cancel what waits or runs; one that finished in the meantime stays, for nobody asked to delete it."""
+    if not service.get(experiment_id).status.finished:
+        service.cancel_or_delete(experiment_id, token)
+    return RedirectResponse(f"/experiments/{experiment_id}", SEE_OTHER)
+
+
+@router.post("/experiments/{experiment_id}/delete")
+def delete(experiment_id: str, service: ServiceDep, token: TokenDep) -> Response:
+    service.cancel_or_delete(experiment_id, token)
+    return RedirectResponse("/archive", SEE_OTHER)
+
+
+@router.post("/experiments/{experiment_id}/{listing}")
+def set_listed(
+    experiment_id: str, listing: Literal["list", "unlist"], service: ServiceDep, token: TokenDep
+) -> Response:
+    service.set_listed(experiment_id, listing == "list", token)
+    return RedirectResponse(f"/experiments/{experiment_id}", SEE_OTHER)
