@@ -1,0 +1,130 @@
+"""The layers that docs/architecture.md draws are the ones the code has."""
+
+import ast
+import subprocess
+import sys
+from functools import cache
+from graphlib import CycleError, TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+from app.settings import ROOT
+
+APP = ROOT / "app"
+FORBIDDEN = ("fastapi", "starlette", "sqlalchemy", "pydantic", "distributed", "PIL")
+SYNTHESIS = sorted(path.stem for path in (APP / "synthesis").glob("*.py") if path.stem != "__init__")
+
+# From the ground up: a module imports from its own layer and from those below it.
+LAYERS = (
+    {"app.errors", "app.settings"},
+    {"app.synthesis"},
+    {"app.images"},
+    {"app.methods", "app.samples"},
+    {"app.experiments"},
+    {"app.store", "app.executor"},
+    {"app.web"},
+    {"app.main", "app.worker"},  # the wiring: of the service, and of a worker process
+    {"app.cli"},
+)
+
+
+def name_of(path: Path) -> str:
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+MODULES = {name_of(path): path for path in APP.rglob("*.py")}
+
+
+def is_type_checking(node: ast.AST) -> bool:
+    return isinstance(node, ast.If) and isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING"
+
+
+def imports_in(node: ast.AST, *, lazy: bool) -> set[str]:
+    """Modules imported by a syntax tree; those inside functions only where ``lazy``."""
+    found: set[str] = set()
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, ast.Import):
+            found |= {alias.name for alias in child.names}
+        elif isinstance(child, ast.ImportFrom):
+            assert child.level == 0, "imports are absolute"
+            base = child.module or ""
+            found |= {f"{base}.{alias.name}" if f"{base}.{alias.name}" in MODULES else base for alias in child.names}
+        elif is_type_checking(child) and not lazy:
+            continue
+        elif lazy or not isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
+            found |= imports_in(child, lazy=lazy)
+    return found
+
+
+@cache
+def imports(module: str, *, lazy: bool = True) -> frozenset[str]:
+    return frozenset(imports_in(ast.parse(MODULES[module].read_text(encoding="utf-8")), lazy=lazy))
+
+
+def layer(module: str) -> int:
+    if module == "app":  # holds the version and nothing else
+        return 0
+    return next(height for height, names in enumerate(LAYERS) if {module, ".".join(module.split(".")[:2])} & names)
+
+
+def test_every_module_belongs_to_a_layer() -> None:
+    assert all(layer(module) >= 0 for module in MODULES)
+
+
+def test_imports_point_one_way() -> None:
+    upwards = {
+        f"{module} imports {imported}"
+        for module in MODULES
+        for imported in imports(module)
+        if imported.split(".")[0] == "app" and layer(imported) > layer(module)
+    }
+    assert upwards == set()
+
+
+def test_no_two_modules_import_each_other() -> None:
+    graph = {module: {name for name in imports(module, lazy=False) if name in MODULES} for module in MODULES}
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        pytest.fail(f"imports go in a circle: {' → '.join(error.args[1])}")
+
+
+@pytest.mark.parametrize(
+    ("library", "allowed"),
+    [
+        ("fastapi", ("app.web", "app.main")),
+        ("starlette", ("app.web", "app.main")),
+        ("sqlalchemy", ("app.store",)),
+        ("distributed", ("app.executor",)),
+        ("typer", ("app.cli",)),
+        ("uvicorn", ("app.cli",)),
+        ("PIL", ("app.images", "app.web")),
+    ],
+)
+def test_a_library_is_imported_only_where_it_belongs(library: str, allowed: tuple[str, ...]) -> None:
+    users = {module for module in MODULES if any(name.split(".")[0] == library for name in imports(module))}
+    assert {module for module in users if not module.startswith(allowed)} == set()
+
+
+def test_only_the_wiring_names_backends() -> None:
+    """Everything else takes a store and an engine through the protocols of `app.experiments.ports`."""
+    backends = ("app.store", "app.executor")
+    users = {
+        module
+        for module in MODULES
+        if not module.startswith(backends) and any(name.startswith(backends) for name in imports(module))
+    }
+    assert users <= {"app.main", "app.worker"}
+
+
+@pytest.mark.parametrize("module", SYNTHESIS)
+def test_numerics_load_nothing_of_the_service(module: str) -> None:
+    """In a fresh process, so that nothing this test run has imported can hide it."""
+    script = (
+        f"import sys, app.synthesis.{module}; "
+        f"print(*sorted({{name.split('.')[0] for name in sys.modules}} & set({FORBIDDEN!r})))"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True, cwd=ROOT)
+    assert done.stdout.split() == []
