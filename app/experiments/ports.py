@@ -1,11 +1,14 @@
 """What the use cases need from outside: protocols that `app.store` and `app.executor` implement."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
+from contextlib import AbstractContextManager
 from datetime import datetime
 from pathlib import Path
 from typing import Protocol
 
 from app.experiments.model import Experiment, Output, Page, Sample, Snapshot
+from app.methods.model import Progress
+from app.settings import Settings
 
 
 class ExperimentStore(Protocol):
@@ -30,7 +33,7 @@ class ExperimentStore(Protocol):
         ...
 
     def unfinished(self) -> list[str]:
-        """Ids of queued and running experiments, oldest first."""
+        """Ids of queued and running experiments that are not transient, oldest first."""
         ...
 
     def start(self, experiment_id: str) -> Experiment | None:
@@ -38,7 +41,7 @@ class ExperimentStore(Protocol):
         ...
 
     def succeed(self, experiment_id: str, outputs: Sequence[Output], timings: Mapping[str, float]) -> bool:
-        """Record outputs and success in one transaction; False if it is no longer running (then nothing is recorded)."""
+        """Record outputs and success in one transaction; nothing and False if it is no longer running."""
         ...
 
     def fail(self, experiment_id: str, error: str) -> bool:
@@ -59,16 +62,20 @@ class ExperimentStore(Protocol):
         """Leave a tombstone (later `get` raises `DeletedError`) and forget everything else about it."""
         ...
 
-    def remove_unused_samples(self, created_before: datetime) -> int:
-        """Remove uploaded samples older than this to which no experiment refers; returns how many."""
+    def remove_unused_samples(self, created_before: datetime, among: Collection[str] | None = None) -> list[Sample]:
+        """Remove uploads older than this (of those named, or of all) to which no experiment refers; returns them."""
         ...
 
     def finished_before(self, moment: datetime) -> list[str]:
         """Ids of the experiments that finished before this moment."""
         ...
 
-    def digests(self) -> set[str]:
-        """Every digest that a sample or an output refers to."""
+    def transient_before(self, moment: datetime) -> list[str]:
+        """Ids of the transient experiments made before this moment."""
+        ...
+
+    def used(self, digests: Collection[str]) -> set[str]:
+        """Those of the digests that a sample or an output refers to."""
         ...
 
     def counts(self) -> Mapping[str, int]:
@@ -81,30 +88,58 @@ class ExperimentStore(Protocol):
 class BlobStore(Protocol):
     """Files by the SHA-256 (hex) of their content; written to a temporary name, fsynced, renamed."""
 
+    @property
+    def temporary_directory(self) -> Path:
+        """Where files are made that `put_file` will move in."""
+        ...
+
+    def temporary(self, data: bytes) -> Path:
+        """Write a file that `put_file` can move in, already on disk."""
+        ...
+
     def put(self, data: bytes) -> str: ...
 
     def put_file(self, path: Path) -> str:
         """Move a finished file in; the path is gone afterwards."""
         ...
 
+    def lease(self) -> AbstractContextManager[None]:
+        """While this is held, nothing is removed: put files and record them within it."""
+        ...
+
     def path(self, digest: str) -> Path:
         """Raises `NotFoundError`."""
         ...
 
-    def remove_except(self, digests: Iterable[str], older_than: datetime) -> int:
-        """Remove every file that is not named and older than this; returns how many."""
+    def digests(self) -> list[str]:
+        """Every digest that has a file."""
         ...
+
+    def remove_unused(self, candidates: Collection[str], used: Callable[[Collection[str]], set[str]]) -> set[str]:
+        """Remove the candidates that ``used``, asked while nobody can put a file, does not name; returns them."""
+        ...
+
+    def remove_temporary(self, older_than: datetime) -> int:
+        """Remove what killed processes left half-written before this moment; how many."""
+        ...
+
+
+Ended = Callable[[str, str | None], None]
+"""``ended(job, failure)``"""
+
+Run = Callable[[Settings, str, Progress], None]
+"""What a worker calls: ``run(settings, job, progress)``"""
 
 
 class Executor(Protocol):
     """The engine that runs jobs. A job is an experiment's id, or ``id@16`` for its texture at 16 bits.
 
     It calls ``ended(job, failure)`` from a thread of its own once a job has left it: ``failure`` is None if the worker's function
-    returned, otherwise a sentence for people. What the worker's function computes it records itself.
+    returned or the job was cancelled, otherwise a sentence for people. What the worker's function computes it records itself.
     """
 
-    def start(self) -> None:
-        """Return when jobs can run."""
+    def start(self, ended: Ended) -> None:
+        """Return when jobs can run. Jobs submitted before are kept."""
         ...
 
     def close(self) -> None: ...
@@ -121,7 +156,7 @@ class Executor(Protocol):
         ...
 
     def snapshot(self, job: str) -> Snapshot | None:
-        """What is known of a job that waits or runs here; None for any other."""
+        """What is known of a job that waits or runs here; None for any other, and for one that is being cancelled."""
         ...
 
     @property

@@ -1,0 +1,64 @@
+"""Files that can be made again: bounded, and safe to delete at any time."""
+
+import os
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from threading import Lock
+from uuid import uuid4
+
+
+class FileCache:
+    """Files by name in one directory; the ones unused for longest go when they take too much room.
+
+    Parameters
+    ----------
+    directory : Path
+        Made if it is not there.
+    max_bytes : int
+        Room they may take.
+    """
+
+    def __init__(self, directory: Path, max_bytes: int) -> None:
+        self._directory = directory
+        self._max_bytes = max_bytes
+        self._lock = Lock()
+        self._written = max_bytes  # as if full: the first file that is added looks at what is there
+
+    def get(self, name: str, make: Callable[[], bytes]) -> Path:
+        """The file of this name; made if it is not there."""
+        path = self._directory / name
+        try:
+            os.utime(path)
+        except FileNotFoundError:
+            data = make()
+            self._directory.mkdir(parents=True, exist_ok=True)
+            temporary = self._directory / f".{uuid4().hex}"
+            temporary.write_bytes(data)
+            temporary.replace(path)
+            self._make_room(len(data))
+        return path
+
+    def forget(self, prefix: str) -> None:
+        """Remove what was made of one original: the files whose names start so."""
+        for path in self._directory.glob(f"{prefix}*"):
+            path.unlink(missing_ok=True)
+
+    def _make_room(self, added: int) -> None:
+        """Look at the whole directory once in a while only: after a tenth of the room was written."""
+        with self._lock:
+            self._written += added
+            if self._written < self._max_bytes // 10:
+                return
+            self._written = 0
+            found = []
+            for path in self._directory.iterdir():
+                with suppress(FileNotFoundError):  # someone else removed it
+                    state = path.stat()
+                    found.append((state.st_mtime, state.st_size, path))
+            total = sum(size for _, size, _ in found)
+            for _, size, path in sorted(found):
+                if total <= self._max_bytes * 9 // 10:
+                    break
+                path.unlink(missing_ok=True)
+                total -= size

@@ -1,0 +1,83 @@
+"""Uploaded and bundled photographs: from a file somebody gave to a sample."""
+
+import logging
+import threading
+from datetime import UTC, datetime
+from pathlib import Path
+
+from app.errors import AppError, BusyError
+from app.experiments.model import Sample
+from app.experiments.ownership import new_identifier
+from app.experiments.ports import BlobStore, ExperimentStore
+from app.images.crop import Rectangle
+from app.images.intake import Limits, intake
+from app.images.read import has_transparency
+from app.samples import bundled
+from app.settings import Settings
+
+log = logging.getLogger(__name__)
+
+AT_ONCE = 2  # decodings beside each other: each may take the memory that the settings allow
+
+
+class SampleIntake:
+    """Keeps photographs: each is decoded and stored once, in a process that can be killed."""
+
+    def __init__(self, store: ExperimentStore, blobs: BlobStore, settings: Settings) -> None:
+        self._store = store
+        self._blobs = blobs
+        self._settings = settings
+        self._decoding = threading.BoundedSemaphore(AT_ONCE)
+
+    def add(self, upload: Path, owner: str | None) -> Sample:
+        """A new sample of this file; ``owner`` is the digest of a token.
+
+        Raises
+        ------
+        UnsupportedFormatError, BrokenFileError, TooLargeError
+            As `app.images.intake` finds.
+        BusyError
+            If too many others are being decoded.
+        """
+        if not self._decoding.acquire(timeout=self._settings.decode_seconds):
+            raise BusyError("Too many photographs are being read at this moment. Try again in a minute.")
+        try:
+            return self._add(upload, new_identifier(), owner, title=None)
+        finally:
+            self._decoding.release()
+
+    def add_bundled(self, closing: threading.Event) -> None:
+        """Keep the bundled photographs that are not kept yet, until told to stop."""
+        known = {sample.id for sample in self._store.bundled_samples()}
+        for entry in bundled(self._settings.samples_dir):
+            if closing.is_set():
+                return
+            if entry.id in known:
+                continue
+            try:
+                self._add(entry.path, entry.id, None, title=entry.title)
+            except AppError as error:
+                log.error("the bundled photograph %s cannot be used: %s", entry.path, error)
+
+    def transparent(self, sample: Sample, crop: Rectangle) -> bool:
+        """Whether the crop holds pixels that are not opaque."""
+        return has_transparency(self._blobs.path(sample.digest), crop)
+
+    def _add(self, path: Path, sample_id: str, owner: str | None, *, title: str | None) -> Sample:
+        limits = Limits()
+        found = intake(path, self._blobs.temporary_directory, limits)
+        with self._blobs.lease():
+            sample = Sample(
+                id=sample_id,
+                digest=self._blobs.put_file(found.path),
+                width=found.width,
+                height=found.height,
+                channels=found.channels,
+                depth=found.depth,
+                transparent=found.transparent,
+                created_at=datetime.now(UTC),
+                title=title,
+                bundled=title is not None,
+            )
+            self._store.add_sample(sample, owner)
+        return sample

@@ -1,0 +1,169 @@
+"""What a worker process does with one job: read the crop, run the method, keep and record the outputs."""
+
+import logging
+import time
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from itertools import islice
+from pathlib import Path
+from typing import Literal
+
+from app.errors import AppError, CancelledError, DeletedError, NotFoundError
+from app.experiments.files import File, of_picture, with_hidden
+from app.experiments.model import Experiment, Output, Status
+from app.experiments.ports import BlobStore, ExperimentStore
+from app.images.read import read_crop
+from app.methods.model import Context, Picture, Progress, Source
+from app.methods.registry import method as method_named
+
+log = logging.getLogger(__name__)
+
+MAX_ATTEMPTS = 6  # more often than any row of restarts would start one: it is the experiment that ends the service
+METHOD_SHARE = 0.92  # of the bar; the rest is for what is done around the method
+DEEP = "@16"  # ends the name of a job that computes the texture of a finished experiment at 16 bits
+DEEP_TEXTURE = ".texture-16"
+
+
+def run_job(store: ExperimentStore, blobs: BlobStore, job: str, progress: Progress, *, threads: int) -> None:
+    """Run one job to its record in the store. Running it twice, even at the same time, is harmless.
+
+    Parameters
+    ----------
+    store, blobs
+        Those of this process.
+    job : str
+        An experiment's id, or ``id@16`` for its texture at 16 bits.
+    progress : Progress
+        Reports; raises when the job is cancelled or out of time.
+    threads : int
+        Threads that the method computes with.
+
+    Raises
+    ------
+    AppError
+        From ``id@16`` only: whatever goes wrong with an experiment itself is recorded as its failure.
+    """
+    if job.endswith(DEEP):
+        _add_deep_texture(store, blobs, job.removesuffix(DEEP), progress, threads)
+        return
+    experiment_id = job
+    experiment = store.start(experiment_id)
+    if experiment is None:
+        return
+    try:
+        if experiment.attempts > MAX_ATTEMPTS:
+            raise AppError(
+                "Running this experiment ended its worker again and again: try a smaller width and height, or another crop."
+            )
+        _compute(store, blobs, experiment, progress, threads)
+    except CancelledError:
+        return  # recorded before the worker was told
+    except AppError as error:
+        store.fail(experiment_id, error.message)
+    except MemoryError:
+        store.fail(experiment_id, "There was not enough memory for this experiment: try a smaller width and height.")
+    except OSError:
+        log.exception("experiment %s: reading or writing its files failed", experiment_id)
+        store.fail(
+            experiment_id, "The service could not read or write its files. Its operator finds the reason in the log."
+        )
+    except Exception:
+        log.exception("experiment %s failed", experiment_id)
+        store.fail(experiment_id, "Something went wrong inside the method. This is a fault of the service, not yours.")
+
+
+def _compute(
+    store: ExperimentStore, blobs: BlobStore, experiment: Experiment, progress: Progress, threads: int
+) -> None:
+    stages = Stages(progress)
+    sources = _read(store, blobs, experiment, stages)
+    pictures = _pictures(experiment, sources, 8, threads, stages)
+    files = map(of_picture, islice(pictures, 1)) if experiment.transient else with_hidden(sources[0], pictures)
+    with _staged(blobs, files) as staged:
+        stages("writing", 1.0)
+        with blobs.lease():
+            outputs = [_kept(blobs, file, path) for file, path in staged]
+            store.succeed(experiment.id, outputs, stages.seconds())
+
+
+def _add_deep_texture(
+    store: ExperimentStore, blobs: BlobStore, experiment_id: str, progress: Progress, threads: int
+) -> None:
+    try:
+        experiment = store.get(experiment_id)
+    except (NotFoundError, DeletedError):
+        return
+    if experiment.status is not Status.SUCCEEDED or experiment.output(DEEP_TEXTURE) is not None:
+        return
+    stages = Stages(progress)
+    sources = _read(store, blobs, experiment, stages)
+    pictures = islice(_pictures(experiment, sources, 16, threads, stages), 1)
+    with _staged(blobs, map(of_picture, pictures)) as staged, blobs.lease():
+        for file, path in staged:
+            store.add_output(experiment_id, replace(_kept(blobs, file, path), name=DEEP_TEXTURE))
+
+
+def _read(store: ExperimentStore, blobs: BlobStore, experiment: Experiment, progress: Progress) -> list[Source]:
+    progress("reading the crop", 0.0)
+    sources = []
+    for item in experiment.inputs:
+        sample = store.sample(item.sample)
+        pixels = read_crop(blobs.path(sample.digest), item.crop)
+        sources.append(Source(pixels, 65535 if sample.depth == 16 else 255))
+    return sources
+
+
+def _pictures(
+    experiment: Experiment, sources: list[Source], depth: Literal[8, 16], threads: int, progress: Progress
+) -> Iterator[Picture]:
+    method = method_named(experiment.method)
+    params = method.params.model_validate(experiment.parameters)
+
+    def scaled(stage: str, fraction: float) -> None:
+        progress(stage, METHOD_SHARE * fraction)
+
+    return method.run(sources, params, Context(depth, threads, scaled))
+
+
+@contextmanager
+def _staged(blobs: BlobStore, files: Iterable[File]) -> Iterator[list[tuple[File, Path]]]:
+    """Files on disk beside the store: what is large does not stay in memory until all are made."""
+    staged: list[tuple[File, Path]] = []
+    try:
+        for file in files:
+            staged.append((replace(file, data=b""), blobs.temporary(file.data)))
+        yield staged
+    finally:
+        for _, path in staged:
+            path.unlink(missing_ok=True)
+
+
+def _kept(blobs: BlobStore, file: File, path: Path) -> Output:
+    size = path.stat().st_size
+    digest = blobs.put_file(path)
+    return Output(file.name, file.title, file.media_type, file.width, file.height, size, digest)
+
+
+class Stages:
+    """Passes progress on and keeps the seconds of every stage."""
+
+    def __init__(self, progress: Progress) -> None:
+        self._progress = progress
+        self._seconds: dict[str, float] = {}
+        self._stage: str | None = None
+        self._since = time.perf_counter()
+
+    def __call__(self, stage: str, fraction: float) -> None:
+        self._progress(stage, fraction)
+        if stage != self._stage:
+            self.seconds()
+            self._stage = stage
+
+    def seconds(self) -> dict[str, float]:
+        """Seconds by stage up to now."""
+        now = time.perf_counter()
+        if self._stage is not None:
+            self._seconds[self._stage] = self._seconds.get(self._stage, 0.0) + now - self._since
+        self._since = now
+        return dict(self._seconds)

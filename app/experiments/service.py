@@ -1,0 +1,347 @@
+"""The use cases. Pages, API and command line talk to this and to nothing below it."""
+
+import asyncio
+import logging
+import threading
+from collections.abc import AsyncIterator, Mapping
+from dataclasses import replace
+from datetime import timedelta
+from functools import partial
+from pathlib import Path
+from typing import Any, Literal
+
+from app.errors import AppError, BusyError, ConflictError, ForbiddenError, InvalidInputError, NotFoundError
+from app.experiments.cache import FileCache
+from app.experiments.following import Following
+from app.experiments.housekeeping import Housekeeping, Pruned
+from app.experiments.intake import SampleIntake
+from app.experiments.model import Experiment, Output, Page, Sample, Snapshot, Status
+from app.experiments.ownership import new_token, same, token_digest
+from app.experiments.pictures import Format, Pictures
+from app.experiments.ports import BlobStore, ExperimentStore, Executor
+from app.experiments.run import DEEP, DEEP_TEXTURE
+from app.experiments.submission import NewExperiment, NewInput, prepare
+from app.images.crop import Rectangle
+from app.settings import Settings
+
+log = logging.getLogger(__name__)
+
+CACHE_BYTES = 1 << 30
+PRUNE_SECONDS = 3600.0
+RECORD_SECONDS = 5.0  # how soon a failure that the database did not take is offered to it again
+DEEP_SECONDS = 120.0  # how long a download waits for its 16-bit texture
+
+
+class Service:
+    """Everything that can be done with samples and experiments.
+
+    Blocking calls are safe from any thread; the coroutines never block the event loop.
+
+    Parameters
+    ----------
+    store, blobs, executor
+        The backends; closed with the service.
+    settings : Settings
+    """
+
+    def __init__(self, store: ExperimentStore, blobs: BlobStore, executor: Executor, settings: Settings) -> None:
+        self._store = store
+        self._blobs = blobs
+        self._executor = executor
+        self._settings = settings
+        cache = FileCache(settings.data_dir / "cache", CACHE_BYTES)
+        self._pictures = Pictures(blobs, cache)
+        self._following = Following(store, executor)
+        self._intake = SampleIntake(store, blobs, settings)
+        self._housekeeping = Housekeeping(
+            store,
+            blobs,
+            cache,
+            sample_keep=timedelta(hours=settings.sample_keep_hours),
+            longest_run=timedelta(hours=1, seconds=settings.time_limit),
+        )
+        self._unrecorded: dict[str, str] = {}
+        self._failures: dict[str, str] = {}
+        self._closing = threading.Event()
+        self._background: list[threading.Thread] = []
+
+    # life
+
+    def start(self) -> None:
+        """Return once experiments can run; what was unfinished is queued, bundled photographs come in by and by."""
+        self._executor.subscribe(self._following.notify)
+        for experiment_id in self._store.unfinished():
+            self._executor.submit(experiment_id)
+        self._executor.start(self._ended)
+        for work in (partial(self._intake.add_bundled, self._closing), self._keep_house):
+            thread = threading.Thread(target=work, daemon=True)
+            thread.start()
+            self._background.append(thread)
+
+    def close(self) -> None:
+        """Stop within seconds; what is unfinished is finished after the next start."""
+        self._closing.set()
+        self._executor.close()
+        for thread in self._background:
+            thread.join(timeout=self._settings.decode_seconds)
+        self._store.close()
+
+    @property
+    def ready(self) -> bool:
+        """Whether experiments can run now."""
+        return self._executor.ready
+
+    @property
+    def waiting(self) -> int:
+        """How many jobs wait."""
+        return self._executor.waiting
+
+    def counts(self) -> Mapping[str, int]:
+        """Experiments by status."""
+        return self._store.counts()
+
+    # samples
+
+    def add_sample(self, upload: Path, owner: str | None) -> Sample:
+        """Keep an uploaded file; ``upload`` is gone afterwards, whatever comes of it. ``owner`` is a token.
+
+        Raises
+        ------
+        UnsupportedFormatError, BrokenFileError, TooLargeError, BusyError
+        """
+        try:
+            return self._intake.add(upload, None if owner is None else token_digest(owner))
+        finally:
+            upload.unlink(missing_ok=True)
+
+    def sample(self, sample_id: str) -> Sample:
+        """Raises `NotFoundError`."""
+        return self._store.sample(sample_id)
+
+    def bundled_samples(self) -> list[Sample]:
+        """Those that have come in so far, in the order of the catalogue."""
+        return self._store.bundled_samples()
+
+    def rendition(self, sample_id: str, size: int | None) -> tuple[Path, str]:
+        """A file that browsers show, and its media type; ``size`` bounds the longer side, None is the full size."""
+        return self._pictures.rendition(self._store.sample(sample_id), size)
+
+    # experiments
+
+    def submit(self, request: NewExperiment, owner_token: str) -> Experiment:
+        """Accept an experiment: it is on disk and queued when this returns.
+
+        Raises
+        ------
+        InvalidInputError
+            With the dotted field at fault.
+        NotFoundError
+            If its method or sample is not there.
+        TooLargeError
+            If the texture would be too large.
+        BusyError
+            If too many experiments wait already.
+        """
+        return self._submit(request, owner_token, transient=False)
+
+    def get(self, experiment_id: str) -> Experiment:
+        """Raises `NotFoundError` or `DeletedError`."""
+        return self._store.get(experiment_id)
+
+    def page(self, *, limit: int = 24, cursor: str | None = None, method: str | None = None) -> Page:
+        """Listed experiments that succeeded, newest first."""
+        return self._store.page(limit=limit, cursor=cursor, method=method)
+
+    def owns(self, experiment: Experiment, token: str | None) -> bool:
+        """Whether this is the token of the owner or of the operator."""
+        if not token:
+            return False
+        operator = self._settings.operator_token
+        is_operator = operator is not None and same(token, operator.get_secret_value())
+        return is_operator or same(token_digest(token), experiment.owner)
+
+    def cancel_or_delete(self, experiment_id: str, token: str | None) -> None:
+        """Stop an unfinished experiment; remove a finished one with all that only it refers to.
+
+        Raises
+        ------
+        ForbiddenError
+            If the token is neither the owner's nor the operator's.
+        """
+        experiment = self._owned(experiment_id, token)
+        if experiment.status.finished:
+            self._delete(experiment)
+        elif self._store.cancel(experiment_id):
+            self._executor.cancel(experiment_id)
+            self._following.notify(experiment_id)
+
+    def set_listed(self, experiment_id: str, listed: bool, token: str | None) -> None:
+        """Show an experiment in the archive, or only to who has its link. Raises `ForbiddenError`."""
+        self._owned(experiment_id, token)
+        self._store.set_listed(experiment_id, listed)
+
+    def snapshot(self, experiment_id: str) -> Snapshot:
+        """Status, place in the queue and progress of this moment."""
+        return self._following.snapshot(experiment_id)
+
+    async def wait(self, experiment_id: str, seconds: float) -> Experiment:
+        """The experiment once it has finished, or as it is after this many seconds."""
+        return await self._following.wait(experiment_id, seconds)
+
+    def watch(self, experiment_id: str) -> AsyncIterator[Snapshot]:
+        """Every change, several at once if they come fast; ends after the finished state."""
+        return self._following.watch(experiment_id)
+
+    # outputs
+
+    def output(self, experiment_id: str, name: str) -> tuple[Output, Path]:
+        """An output's record and its file. Raises `NotFoundError`, also while it is not there yet."""
+        output = self._output(self._store.get(experiment_id), name)
+        return output, self._blobs.path(output.digest)
+
+    async def converted(
+        self, experiment_id: str, name: str, file_format: Format, depth: Literal[8, 16] | None = None
+    ) -> tuple[Path, str]:
+        """An output in another format, and its media type. The texture at 16 bits is computed when first asked for.
+
+        Raises
+        ------
+        InvalidInputError
+            If the format or the output does not come at this depth.
+        BusyError
+            If the engine did not get to it soon enough; trying again later helps.
+        """
+        experiment = await asyncio.to_thread(self._store.get, experiment_id)
+        output = self._output(experiment, name)
+        if depth == 16:
+            self._pictures.check_deep(file_format)
+            output = await self._deep_texture(experiment, output)
+        return await asyncio.to_thread(self._pictures.converted, output, file_format)
+
+    async def synthesize(
+        self,
+        upload: Path,
+        *,
+        method: str,
+        crop: Rectangle | None,
+        parameters: Mapping[str, Any],
+        file_format: Format = "png",
+        depth: Literal[8, 16] | None = None,
+    ) -> tuple[bytes, str]:
+        """A texture straight from a file: the picture and its media type. Nothing of it is kept.
+
+        Raises
+        ------
+        AppError
+            Any of those of `add_sample`, `submit` and `converted`; `ConflictError` if the run failed.
+        """
+        sample = await asyncio.to_thread(self.add_sample, upload, None)
+        experiment = None
+        try:
+            request = NewExperiment(method, (NewInput(sample.id, crop),), parameters, listed=False)
+            submit = partial(self._submit, request, new_token(), transient=True)
+            experiment = await asyncio.to_thread(submit)
+            finished = await self.wait(experiment.id, float("inf"))
+            if finished.status is not Status.SUCCEEDED:
+                raise ConflictError(finished.error or "The run was cancelled.")
+            path, media_type = await self.converted(experiment.id, "texture", file_format, depth)
+            return await asyncio.to_thread(path.read_bytes), media_type
+        finally:
+            forget = partial(self._forget, sample, experiment)
+            await asyncio.shield(asyncio.get_running_loop().run_in_executor(None, forget))
+
+    def prune(self, older_than: timedelta | None) -> Pruned:
+        """Remove what nothing refers to and, where ``older_than`` is given, experiments that finished longer ago."""
+        return self._housekeeping.prune(older_than)
+
+    # inside
+
+    def _submit(self, request: NewExperiment, owner_token: str, *, transient: bool) -> Experiment:
+        if self._executor.waiting >= self._settings.queue_limit:
+            raise BusyError("Too many experiments wait already. Try again in a minute.")
+        experiment = prepare(
+            request,
+            token_digest(owner_token),
+            sample=self._store.sample,
+            transparent=self._intake.transparent,
+            max_output_pixels=self._settings.max_output_pixels,
+        )
+        experiment = replace(experiment, transient=transient)
+        self._store.add(experiment)
+        self._executor.submit(experiment.id)
+        return experiment
+
+    def _owned(self, experiment_id: str, token: str | None) -> Experiment:
+        experiment = self._store.get(experiment_id)
+        if not self.owns(experiment, token):
+            raise ForbiddenError(
+                "Only the owner of this experiment may do this: use the browser or the token it was made with."
+            )
+        return experiment
+
+    def _delete(self, experiment: Experiment) -> None:
+        self._executor.cancel(f"{experiment.id}{DEEP}")
+        self._housekeeping.delete(experiment)
+
+    def _forget(self, sample: Sample, experiment: Experiment | None) -> None:
+        if experiment is None:
+            self._housekeeping.remove_sample(sample.id)
+            return
+        self._store.cancel(experiment.id)
+        self._executor.cancel(experiment.id)
+        self._delete(self._store.get(experiment.id))
+
+    def _output(self, experiment: Experiment, name: str) -> Output:
+        output = experiment.output(name)
+        if output is not None:
+            return output
+        if not experiment.status.finished:
+            raise NotFoundError("This experiment has no outputs yet: it is not finished.")
+        names = ", ".join(output.name for output in experiment.outputs if output.listed)
+        raise NotFoundError(f"This experiment has no output {name!r}. It has: {names or 'none'}.")
+
+    async def _deep_texture(self, experiment: Experiment, output: Output) -> Output:
+        if output.name != "texture":
+            raise InvalidInputError("Only the texture itself comes at 16 bits per channel.", "depth")
+        deep = experiment.output(DEEP_TEXTURE)
+        if deep is not None:
+            return deep
+        job = f"{experiment.id}{DEEP}"
+        if self._executor.snapshot(job) is None:
+            if self.waiting >= self._settings.queue_limit:
+                raise BusyError("Too many experiments wait already. Try again in a minute.")
+            self._failures.pop(job, None)
+            self._executor.submit(job)
+        if not await self._following.left(job, DEEP_SECONDS):
+            raise BusyError("The texture at 16 bits is still being computed. Try again in a minute.")
+        deep = (await asyncio.to_thread(self._store.get, experiment.id)).output(DEEP_TEXTURE)
+        if deep is None:
+            raise AppError(self._failures.pop(job, "The texture at 16 bits could not be computed. Try again."))
+        return deep
+
+    def _ended(self, job: str, failure: str | None) -> None:
+        """Record a failure of the worker itself; what a worker computed it has recorded."""
+        if failure is None:
+            return
+        if job.endswith(DEEP):
+            self._failures[job] = failure
+            return
+        try:
+            self._store.fail(job, failure)
+        except Exception:
+            log.exception("the failure of experiment %s could not be recorded; it will be tried again", job)
+            self._unrecorded[job] = failure
+
+    def _keep_house(self) -> None:
+        waited = 0.0
+        while not self._closing.wait(RECORD_SECONDS):
+            try:
+                for job in list(self._unrecorded):
+                    self._store.fail(job, self._unrecorded[job])
+                    del self._unrecorded[job]
+                waited += RECORD_SECONDS
+                if waited >= PRUNE_SECONDS:
+                    waited = 0.0
+                    self.prune(None)
+            except Exception:
+                log.exception("housekeeping failed; it will be tried again")
