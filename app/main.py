@@ -1,0 +1,98 @@
+"""The only wiring: settings → backends → service → web application."""
+
+import asyncio
+import logging
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager, suppress
+from functools import partial
+from importlib.metadata import version
+
+import anyio
+from fastapi import FastAPI
+from starlette.middleware import Middleware
+from starlette.staticfiles import StaticFiles
+
+from app.executor.dask import DaskExecutor
+from app.experiments.service import Service
+from app.settings import ROOT, Settings
+from app.store.blobs import FileBlobs
+from app.store.sql import SqlStore
+from app.web import docs, health, pages, problems
+from app.web.api import events, experiments, methods, outputs, samples, synthesize
+from app.web.head import HeadAsGet
+from app.web.limits import BodyLimit
+from app.web.metrics import CountRequests, Metrics
+from app.web.openapi import document
+from app.web.origin import CrossOrigin
+from app.web.security import SecurityHeaders
+from app.worker import run_job
+
+log = logging.getLogger(__name__)
+
+UPLOADS_AT_ONCE = 4
+
+
+def build_service(settings: Settings) -> Service:
+    """Make the service with the backends that the settings name; its `start` begins work."""
+    settings.data_dir.mkdir(parents=True, exist_ok=True)
+    store = SqlStore(settings.sql_url)
+    blobs = FileBlobs(settings.data_dir / "files")
+    return Service(store, blobs, DaskExecutor(settings, run_job), settings)
+
+
+def create_app(settings: Settings | None = None, service: Service | None = None) -> FastAPI:
+    """Make the web application, also for ``uvicorn --factory app.main:create_app``.
+
+    Parameters
+    ----------
+    settings : Settings, optional
+        Default: from the environment.
+    service : Service, optional
+        Default: `build_service`. The application starts and closes it.
+    """
+    settings = settings or Settings()
+    service = service or build_service(settings)
+    metrics = Metrics(service)
+    app = FastAPI(
+        title="Microtexture",
+        summary="Texture synthesis by example",
+        version=version("microtexture"),
+        openapi_url=docs.OPENAPI_URL,
+        docs_url=None,
+        redoc_url=None,
+        swagger_ui_oauth2_redirect_url=None,
+        lifespan=_lifespan,
+        middleware=[
+            Middleware(CountRequests, metrics=metrics),
+            Middleware(SecurityHeaders),
+            Middleware(CrossOrigin, public_origin=settings.base_url and settings.base_url.rstrip("/")),
+            Middleware(HeadAsGet),
+            Middleware(BodyLimit, upload=settings.max_upload_bytes),
+        ],
+    )
+    app.state.settings, app.state.service, app.state.metrics = settings, service, metrics
+    app.state.upload_threads = anyio.CapacityLimiter(UPLOADS_AT_ONCE)
+    problems.install(app, pages.render_error)
+    for part in (methods, samples, experiments, events, outputs, synthesize, health, docs, pages):
+        app.include_router(part.router)
+    app.mount("/static", StaticFiles(directory=ROOT / "static"), name="static")
+    app.mount(docs.SWAGGER_URL, StaticFiles(directory=docs.SWAGGER_FILES), name="swagger")
+    app.openapi = partial(document, app)  # type: ignore[method-assign]
+    return app
+
+
+@asynccontextmanager
+async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
+    """Start the engine beside the web, which answers from the first moment, and stop it with the web."""
+    service: Service = app.state.service
+    starting = asyncio.create_task(asyncio.to_thread(service.start))
+    starting.add_done_callback(_log_failure)
+    yield
+    with suppress(Exception):
+        await starting
+    await asyncio.to_thread(service.close)
+
+
+def _log_failure(starting: asyncio.Task[None]) -> None:
+    if not starting.cancelled() and (error := starting.exception()) is not None:
+        log.critical("The engine did not start: no experiment can run. Mend it and start again.", exc_info=error)

@@ -1,0 +1,67 @@
+"""``/api/v1/experiments/{id}/events``: an experiment as it goes, as server-sent events."""
+
+from collections.abc import AsyncIterator
+from contextlib import aclosing
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Header
+from fastapi.sse import EventSourceResponse, ServerSentEvent
+from starlette.concurrency import run_in_threadpool
+from starlette.exceptions import HTTPException
+
+from app.experiments.model import Status
+from app.web.api.experiments import ExperimentId
+from app.web.api.records import API
+from app.web.deps import ServiceDep
+from app.web.openapi import problems
+
+router = APIRouter(prefix=f"{API}/experiments", tags=["experiments"])
+
+LAST_ID = "end"
+RETRY_MILLISECONDS = 2000
+
+
+async def _followable(
+    experiment_id: ExperimentId,
+    service: ServiceDep,
+    last_event_id: Annotated[
+        str | None, Header(description="As browsers send it when they connect again.", max_length=100)
+    ] = None,
+) -> None:
+    """Answer errors before the stream begins, and 204 to who has seen its end: browsers then stop connecting."""
+    await run_in_threadpool(service.get, experiment_id)
+    if last_event_id == LAST_ID:
+        raise HTTPException(204)
+
+
+@router.get(
+    "/{experiment_id}/events",
+    name="experiment_events",
+    summary="Follow an experiment",
+    dependencies=[Depends(_followable)],
+    response_class=EventSourceResponse,
+    responses={204: {"description": "You have seen the end (`Last-Event-ID`)."}, **problems(404, 410, 422)},
+)
+async def experiment_events(experiment_id: ExperimentId, service: ServiceDep) -> AsyncIterator[ServerSentEvent]:
+    """Server-sent events: `status` with `{"status", "position"}` at first and whenever that changes, `progress` with
+    `{"progress", "stage", "position", "elapsed"}`. The stream ends after a finished status.
+    """  # noqa: D205 -- OpenAPI shows it as one paragraph
+    status: Status | None = None
+    number = 0
+    async with aclosing(service.watch(experiment_id)) as snapshots:
+        async for snapshot in snapshots:
+            data = {
+                "status": snapshot.status,
+                "position": snapshot.position,
+                "progress": snapshot.fraction,
+                "stage": snapshot.stage,
+                "elapsed": round(snapshot.elapsed, 3),
+            }
+            names = ["progress"] if snapshot.status is status else ["progress", "status"]
+            status = snapshot.status
+            for name in names:
+                number += 1
+                identifier = LAST_ID if status.finished and name == "status" else str(number)
+                yield ServerSentEvent(
+                    event=name, id=identifier, retry=RETRY_MILLISECONDS if number == 1 else None, data=data
+                )

@@ -1,0 +1,233 @@
+"""``/api/v1/experiments``: submit, read, list, change, cancel and delete."""
+
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Depends, Header, Path, Query, Request
+from pydantic import ConfigDict, Field
+from starlette.concurrency import run_in_threadpool
+from starlette.exceptions import HTTPException
+from starlette.responses import Response
+
+from app.errors import DeletedError, InvalidInputError, NotFoundError
+from app.experiments.model import Experiment
+from app.experiments.ownership import new_token
+from app.experiments.service import Service
+from app.experiments.submission import NewExperiment, NewInput
+from app.methods.registry import METHODS
+from app.web.api.prefer import LONGEST, wait_seconds
+from app.web.api.records import API, IDENTIFIER, Body, ExperimentList, ExperimentRecord, InputBody, ListedBody
+from app.web.deps import ServiceDep, TokenDep, base_url, remember_owner
+from app.web.openapi import EXAMPLE_METHOD, EXAMPLE_SAMPLE, OWNER, parameters_schema, problems
+
+router = APIRouter(prefix=f"{API}/experiments", tags=["experiments"])
+
+ExperimentId = Annotated[str, Path(pattern=IDENTIFIER, description="Id of an experiment.")]
+
+
+class ExperimentBody(Body):
+    """What to compute, from what, and how."""
+
+    model_config = ConfigDict(
+        json_schema_extra={
+            "oneOf": [
+                {
+                    "title": method.title,
+                    "properties": {
+                        "method": {"const": method.name},
+                        "inputs": {"minItems": len(method.inputs), "maxItems": len(method.inputs)},
+                        "parameters": parameters_schema(method.name),
+                    },
+                }
+                for method in METHODS.values()
+            ],
+            "examples": [
+                {
+                    "method": EXAMPLE_METHOD,
+                    "inputs": [{"sample": EXAMPLE_SAMPLE, "crop": {"x": 0, "y": 0, "width": 64, "height": 64}}],
+                    "parameters": {"width": 128, "height": 128, "seed": 7},
+                    "listed": False,
+                }
+            ],
+        }
+    )
+
+    method: str = Field(description="Name of a method.", json_schema_extra={"enum": list(METHODS)})
+    inputs: list[InputBody] = Field(min_length=1, max_length=8, description="As many as the method has.")
+    parameters: dict[str, Any] = Field(default_factory=dict, description="What is left out has its default.")
+    listed: bool = Field(True, description="Whether the archive shows it; otherwise only its link leads to it.")
+
+    def requested(self) -> NewExperiment:
+        """Say the same in the service's words.
+
+        Raises
+        ------
+        InvalidInputError
+            If there is no such method.
+        """
+        if self.method not in METHODS:
+            raise InvalidInputError(
+                f"There is no method of this name. The methods are: {', '.join(METHODS)}.", "method"
+            )
+        inputs = tuple(
+            NewInput(source.sample, source.crop.rectangle() if source.crop else None) for source in self.inputs
+        )
+        return NewExperiment(self.method, inputs, self.parameters, self.listed)
+
+
+def require_json(request: Request) -> None:
+    """Answer 415 to a body that does not say it is JSON."""
+    kind = request.headers.get("content-type", "").partition(";")[0].strip().lower()
+    if kind != "application/json" and not (kind.startswith("application/") and kind.endswith("+json")):
+        raise HTTPException(415, "Send JSON, with the header Content-Type: application/json.")
+
+
+def record_of(request: Request, service: Service, experiment: Experiment) -> ExperimentRecord:
+    """Write the record, as of now."""
+    return ExperimentRecord.of(experiment, service.snapshot(experiment.id), base_url(request))
+
+
+_CREATED = {
+    "description": "Finished within the time to wait.",
+    "model": ExperimentRecord,
+    "headers": {
+        "Location": {"description": "Address of the record.", "schema": {"type": "string"}},
+        "Preference-Applied": {"description": "`wait=…` if you asked to wait.", "schema": {"type": "string"}},
+    },
+}
+
+
+@router.post(
+    "",
+    status_code=202,
+    response_model_exclude_unset=True,
+    dependencies=[Depends(require_json)],
+    summary="Run a method",
+    responses={
+        201: _CREATED,
+        202: {**_CREATED, "description": "Accepted: it waits or runs."},
+        **problems(404, 422, 503),
+    },
+    openapi_extra={"security": OWNER},
+)
+async def submit_experiment(
+    body: ExperimentBody,
+    request: Request,
+    response: Response,
+    service: ServiceDep,
+    token: TokenDep,
+    prefer: Annotated[
+        str | None,
+        Header(
+            description=f"`wait=30` waits that many seconds at most (up to {LONGEST}) for it to finish.",
+            examples=["wait=30"],
+        ),
+    ] = None,
+) -> ExperimentRecord:
+    """Everything is checked before it is accepted; once accepted it is finished, whatever restarts in between.
+
+    Without a token of yours the record holds a new `owner_token`, once.
+    """
+    owner = token or new_token()
+    try:
+        experiment = await run_in_threadpool(service.submit, body.requested(), owner)
+    except (NotFoundError, DeletedError) as error:  # this address exists; what does not is a sample
+        raise InvalidInputError(error.message, "inputs") from None
+    seconds = wait_seconds(prefer)
+    if seconds is not None:
+        experiment = await service.wait(experiment.id, seconds)
+        response.headers["Preference-Applied"] = f"wait={seconds}"
+    record = await run_in_threadpool(record_of, request, service, experiment)
+    response.status_code = 201 if record.status.finished else 202
+    response.headers["Location"] = record.url
+    if token is None:
+        remember_owner(request, response, owner)
+        record.owner_token = owner
+    return record
+
+
+@router.get(
+    "",
+    summary="The archive",
+    response_model_exclude_unset=True,
+    responses={
+        200: {
+            "headers": {
+                "Link": {"description": "`rel=next`, unless this is the last page.", "schema": {"type": "string"}}
+            }
+        },
+        **problems(422),
+    },
+)
+def list_experiments(
+    request: Request,
+    response: Response,
+    service: ServiceDep,
+    limit: Annotated[int, Query(ge=1, le=100, description="Experiments a page.")] = 24,
+    cursor: Annotated[str | None, Query(max_length=200, description="From the `Link` of the page before.")] = None,
+    method: Annotated[
+        str | None, Query(description="Only of this method.", json_schema_extra={"enum": list(METHODS)})
+    ] = None,
+) -> ExperimentList:
+    """Public experiments that succeeded, newest first."""
+    if method is not None and method not in METHODS:
+        raise InvalidInputError(f"There is no method of this name. The methods are: {', '.join(METHODS)}.", "method")
+    page = service.page(limit=limit, cursor=cursor, method=method)
+    following = None
+    if page.cursor is not None:
+        address = request.url.include_query_params(cursor=page.cursor)
+        following = f"{base_url(request)}{address.path}?{address.query}"
+        response.headers["Link"] = f'<{following}>; rel="next"'
+    return ExperimentList(
+        experiments=[record_of(request, service, experiment) for experiment in page.experiments], next=following
+    )
+
+
+@router.get(
+    "/{experiment_id}",
+    summary="The record of an experiment",
+    response_model_exclude_unset=True,
+    responses=problems(404, 410),
+)
+def read_experiment(experiment_id: ExperimentId, request: Request, service: ServiceDep) -> ExperimentRecord:
+    """Where it stands, and its outputs once it succeeded."""
+    return record_of(request, service, service.get(experiment_id))
+
+
+@router.patch(
+    "/{experiment_id}",
+    summary="List or unlist an experiment",
+    response_model_exclude_unset=True,
+    dependencies=[Depends(require_json)],
+    responses=problems(404, 410, 422),
+    openapi_extra={"security": OWNER},
+)
+def change_experiment(
+    experiment_id: ExperimentId, body: ListedBody, request: Request, service: ServiceDep, token: TokenDep
+) -> ExperimentRecord:
+    """For its owner and the operator."""
+    service.set_listed(experiment_id, body.listed, token)
+    return record_of(request, service, service.get(experiment_id))
+
+
+@router.delete(
+    "/{experiment_id}",
+    status_code=204,
+    summary="Cancel or delete an experiment",
+    responses={
+        202: {
+            "model": ExperimentRecord,
+            "description": "It had not finished: it is cancelled now. Delete it again to remove it.",
+        },
+        204: {"description": "It had finished: it is removed, with its files."},
+        **problems(404, 410),
+    },
+    openapi_extra={"security": OWNER},
+)
+def delete_experiment(experiment_id: ExperimentId, request: Request, service: ServiceDep, token: TokenDep) -> Response:
+    """For its owner and the operator."""
+    service.cancel_or_delete(experiment_id, token)
+    try:
+        record = record_of(request, service, service.get(experiment_id))
+    except DeletedError:
+        return Response(status_code=204)
+    return Response(record.model_dump_json(exclude_unset=True), 202, media_type="application/json")

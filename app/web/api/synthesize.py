@@ -1,0 +1,135 @@
+"""``POST /api/v1/synthesize``: a photograph in, its texture out, nothing kept."""
+
+import asyncio
+from typing import Any, Literal, cast
+
+from fastapi import APIRouter, Request
+from starlette.requests import ClientDisconnect
+from starlette.responses import Response
+
+from app.errors import InvalidInputError
+from app.images.crop import Rectangle
+from app.methods.registry import METHODS
+from app.web.api.records import API
+from app.web.deps import ServiceDep
+from app.web.files import SUFFIXES
+from app.web.openapi import form_parameters, problems
+from app.web.uploads import Form, receive_form
+
+router = APIRouter(prefix=API, tags=["experiments"])
+
+Format = Literal["png", "jpeg", "webp", "tiff"]
+FORMATS: dict[str, Format] = {"image/png": "png", "image/jpeg": "jpeg", "image/webp": "webp", "image/tiff": "tiff"}
+_DEPTHS: dict[str, Literal[8, 16]] = {"8": 8, "16": 16}
+
+_FORM: dict[str, Any] = {
+    "type": "object",
+    "required": ["file", "method"],
+    "properties": {
+        "file": {
+            "type": "string",
+            "contentMediaType": "application/octet-stream",
+            "description": "PNG, JPEG, WebP or TIFF, 8 or 16 bits, grey or colour.",
+        },
+        "method": {"type": "string", "enum": list(METHODS), "description": "Name of a method."},
+        "crop": {
+            "type": "string",
+            "pattern": r"^\d{1,6},\d{1,6},\d{1,6},\d{1,6}$",
+            "description": "`x,y,width,height` in pixels of the upright picture; default: all of it.",
+            "examples": ["0,0,256,256"],
+        },
+        "format": {
+            "type": "string",
+            "enum": list(FORMATS.values()),
+            "description": "Of the answer; default: what `Accept` prefers, else PNG.",
+        },
+        "depth": {"type": "string", "enum": list(_DEPTHS), "description": "Bits per channel, of PNG and TIFF."},
+        **form_parameters(),
+    },
+}
+
+
+@router.post(
+    "/synthesize",
+    summary="A texture straight from a photograph",
+    response_class=Response,
+    responses={
+        200: {
+            "description": "The texture.",
+            "content": {media: {"schema": {"type": "string", "format": "binary"}} for media in FORMATS},
+        },
+        **problems(409, 422, 503),
+    },
+    openapi_extra={"requestBody": {"required": True, "content": {"multipart/form-data": {"schema": _FORM}}}},
+)
+async def synthesize(request: Request, service: ServiceDep) -> Response:
+    """Every parameter of the method is a field of the form. Nothing of it is kept; hanging up cancels it."""
+    async with receive_form(request) as form:
+        wanted = _wanted(request, form)
+        running = asyncio.ensure_future(service.synthesize(**wanted))
+        hung_up = asyncio.ensure_future(_hung_up(request))
+        try:
+            await asyncio.wait({running, hung_up}, return_when=asyncio.FIRST_COMPLETED)
+            if not running.done():
+                raise ClientDisconnect
+            picture, media_type = running.result()
+        finally:
+            hung_up.cancel()
+            running.cancel()
+            await asyncio.wait({running, hung_up})
+    name = f"{wanted['method']}-texture{SUFFIXES[media_type]}"
+    headers = {"Content-Disposition": f'inline; filename="{name}"', "Cache-Control": "no-store", "Vary": "Accept"}
+    return Response(picture, media_type=media_type, headers=headers)
+
+
+def _wanted(request: Request, form: Form) -> dict[str, Any]:
+    """Read the form as the service's arguments; what is left empty counts as left out."""
+    fields = {name: value.strip() for name, value in form.fields.items() if value.strip()}
+    if form.file is None:
+        raise InvalidInputError("Send a picture in the form's field 'file'.", "file")
+    method = fields.pop("method", "")
+    if method not in METHODS:
+        raise InvalidInputError(
+            f"Name a method in the field 'method'. The methods are: {', '.join(METHODS)}.", "method"
+        )
+    crop = fields.pop("crop", None)
+    file_format = fields.pop("format", None)
+    if file_format is not None and file_format not in FORMATS.values():
+        raise InvalidInputError(f"The format is one of: {', '.join(FORMATS.values())}.", "format")
+    depth = fields.pop("depth", None)
+    if depth is not None and depth not in _DEPTHS:
+        raise InvalidInputError("The depth is 8 or 16 bits per channel.", "depth")
+    return {
+        "upload": form.file,
+        "method": method,
+        "crop": None if crop is None else Rectangle.parse(crop),
+        "parameters": fields,
+        "file_format": file_format or preferred_format(request.headers.get("accept", "")),
+        "depth": None if depth is None else _DEPTHS[depth],
+    }
+
+
+def preferred_format(accept: str) -> Format:
+    """Choose the format that an ``Accept`` header likes best; PNG if it likes none or several as much.
+
+    Examples
+    --------
+    >>> preferred_format("image/webp,image/png;q=0.8"), preferred_format("image/*"), preferred_format("text/html")
+    ('webp', 'png', 'png')
+    """
+    likings: dict[Format, float] = {}
+    for part in accept.lower().split(","):
+        media, *options = (piece.strip() for piece in part.split(";"))
+        if media in FORMATS:
+            quality = next((option[2:] for option in options if option.startswith("q=")), "1")
+            try:
+                likings[FORMATS[media]] = float(quality)
+            except ValueError:
+                continue
+    best = max(likings.values(), default=0.0)
+    return "png" if best <= 0 or likings.get("png") == best else next(name for name in likings if likings[name] == best)
+
+
+async def _hung_up(request: Request) -> None:
+    while cast(dict[str, Any], await request.receive())["type"] != "http.disconnect":
+        pass

@@ -1,0 +1,66 @@
+"""What routes are given: the service, the settings, and who is asking."""
+
+import re
+from collections.abc import Callable
+from typing import Annotated, TypeVar, cast
+
+import anyio.to_thread
+from fastapi import Depends, Request
+from starlette.responses import Response
+
+from app.experiments.service import Service
+from app.settings import Settings
+
+OWNER_COOKIE = "microtexture_owner"
+_COOKIE_SECONDS = 400 * 24 * 3600  # browsers keep no cookie for longer
+_TOKEN = re.compile(r"[A-Za-z0-9_-]{16,200}")
+_Result = TypeVar("_Result")
+
+
+def get_service(request: Request) -> Service:
+    return cast(Service, request.app.state.service)
+
+
+def get_settings(request: Request) -> Settings:
+    return cast(Settings, request.app.state.settings)
+
+
+def owner_token(request: Request) -> str | None:
+    """Find the token of who is asking: from ``Authorization: Bearer``, else from the cookie."""
+    scheme, _, token = request.headers.get("authorization", "").partition(" ")
+    if scheme.lower() != "bearer":
+        token = request.cookies.get(OWNER_COOKIE, "")
+    token = token.strip()
+    return token if _TOKEN.fullmatch(token) else None
+
+
+def remember_owner(request: Request, response: Response, token: str) -> None:
+    """Keep the token in a cookie that scripts cannot read and other sites cannot send along with a form."""
+    response.set_cookie(
+        OWNER_COOKIE,
+        token,
+        max_age=_COOKIE_SECONDS,
+        path="/",
+        secure=base_url(request).startswith("https:"),
+        httponly=True,
+        samesite="lax",
+    )
+
+
+def base_url(request: Request) -> str:
+    """Give the service's public address without a final slash: as the operator, else as the request says."""
+    return (get_settings(request).base_url or str(request.base_url)).rstrip("/")
+
+
+async def in_upload_thread(request: Request, call: Callable[..., _Result], *arguments: object) -> _Result:
+    """Run a blocking call on an upload in one of a few threads kept for that.
+
+    Decoding may take seconds: many uploads at once wait for each other here, and keep no thread from the other routes.
+    """
+    limiter = cast(anyio.CapacityLimiter, request.app.state.upload_threads)
+    return await anyio.to_thread.run_sync(call, *arguments, limiter=limiter)
+
+
+ServiceDep = Annotated[Service, Depends(get_service)]
+SettingsDep = Annotated[Settings, Depends(get_settings)]
+TokenDep = Annotated[str | None, Depends(owner_token)]

@@ -1,0 +1,46 @@
+"""``/healthz``, ``/readyz`` and ``/metrics``: for those who operate the service."""
+
+from typing import Any
+
+from fastapi import APIRouter, Request
+from starlette.responses import JSONResponse, Response
+
+from app.web.deps import ServiceDep
+from app.web.metrics import Metrics
+from app.web.openapi import problems
+from app.web.problems import problem
+
+router = APIRouter(tags=["service"])
+
+_UNKEPT = {"Cache-Control": "no-store"}
+
+
+def _status(word: str) -> dict[int | str, dict[str, Any]]:
+    schema = {"type": "object", "required": ["status"], "properties": {"status": {"const": word}}}
+    return {200: {"content": {"application/json": {"schema": schema}}}}
+
+
+@router.get("/healthz", summary="Alive", responses=_status("alive"))
+async def health() -> Response:
+    """Say that the web process answers."""
+    return JSONResponse({"status": "alive"}, headers=_UNKEPT)
+
+
+@router.get("/readyz", summary="Able to take work", responses={**_status("ready"), **problems(503)})
+def readiness(service: ServiceDep) -> Response:
+    """Experiments can run."""
+    if service.ready:
+        return JSONResponse({"status": "ready"}, headers=_UNKEPT)
+    return problem(503, "The engine is not there: it starts, or was lost and comes back.", headers={"Retry-After": "1"})
+
+
+@router.get(
+    "/metrics",
+    summary="Prometheus metrics",
+    response_class=Response,
+    responses={200: {"content": {"text/plain": {"schema": {"type": "string"}}}}},
+)
+def metrics(request: Request) -> Response:
+    """Tell requests by route and status, their durations, experiments by status, and the queue."""
+    made: Metrics = request.app.state.metrics
+    return Response(made.text(), media_type=made.content_type, headers=_UNKEPT)

@@ -1,0 +1,73 @@
+"""Bounds the bytes of a request's body, declared or not, before anything else looks at it."""
+
+from starlette.datastructures import Headers
+from starlette.exceptions import HTTPException
+from starlette.requests import Request
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from app.settings import MEBIBYTE
+from app.web.problems import respond
+
+FORM_BYTES = MEBIBYTE  # room for the fields of a form beside its file
+_DISCARDED = 3  # times the limit
+
+
+class BodyLimit:
+    """Answers 413 to a body that is larger than its kind may be: ``upload`` bytes in a form, or a mebibyte of JSON.
+
+    What a client is still sending is read and dropped, up to a few times the limit: most clients look for an answer
+    only when they have sent everything, and a connection closed in their face loses it.
+    """
+
+    def __init__(self, app: ASGIApp, *, upload: int) -> None:
+        self.app = app
+        self.upload = upload
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+        headers = Headers(scope=scope)
+        is_form = headers.get("content-type", "").lower().startswith("multipart/form-data")
+        limit = self.upload + FORM_BYTES if is_form else MEBIBYTE
+        what, bound = ("upload", self.upload) if is_form else ("body", limit)
+        detail = f"The {what} is larger than {size(bound)}: send a smaller one."
+        declared = headers.get("content-length", "")
+        if declared.isdigit() and int(declared) > limit:
+            if headers.get("expect", "").lower() != "100-continue":
+                await _discard(receive, _DISCARDED * limit)
+            await respond(Request(scope), 413, detail)(scope, receive, send)
+            return
+        received = 0
+
+        async def limited() -> Message:
+            nonlocal received
+            message = await receive()
+            received += len(message.get("body", b""))
+            if received > limit:
+                if message.get("more_body"):
+                    await _discard(receive, _DISCARDED * limit)
+                raise HTTPException(413, detail)
+            return message
+
+        await self.app(scope, limited, send)
+
+
+async def _discard(receive: Receive, at_most: int) -> None:
+    dropped = 0
+    while dropped <= at_most:
+        message = await receive()
+        dropped += len(message.get("body", b""))
+        if message["type"] == "http.disconnect" or not message.get("more_body"):
+            return
+
+
+def size(count: int) -> str:
+    """Bytes in words.
+
+    Examples
+    --------
+    >>> size(32 << 20), size(1500)
+    ('32 MB', '1 kB')
+    """
+    return f"{count >> 20} MB" if count >= MEBIBYTE else f"{max(1, count >> 10)} kB"

@@ -1,0 +1,55 @@
+"""Which requests of other sites' pages are refused: those that change something.
+
+Writes are taken from our own pages and from programs. Browsers say where a request comes from; no page makes them lie.
+"""
+
+from urllib.parse import urlsplit
+
+from starlette.datastructures import Headers
+from starlette.requests import Request
+from starlette.responses import Response
+from starlette.types import ASGIApp, Receive, Scope, Send
+
+from app.web.problems import respond
+from app.web.security import API_PREFIX
+
+_READING = {"GET", "HEAD", "OPTIONS"}
+
+
+class CrossOrigin:
+    """Answers CORS preflights of reads, and refuses writes that another site's page makes a browser send.
+
+    Browsers name where a request comes from in ``Sec-Fetch-Site`` and ``Origin``; programs send neither.
+    """
+
+    def __init__(self, app: ASGIApp, *, public_origin: str | None) -> None:
+        self.app = app
+        self.public_origin = public_origin
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+        headers = Headers(scope=scope)
+        method = scope["method"]
+        if method == "OPTIONS" and "access-control-request-method" in headers and scope["path"].startswith(API_PREFIX):
+            allowed = {
+                "Access-Control-Allow-Methods": "GET, HEAD",
+                "Access-Control-Allow-Headers": "If-None-Match, Last-Event-ID, Range",
+                "Access-Control-Max-Age": "86400",
+            }
+            await Response(status_code=204, headers=allowed)(scope, receive, send)
+        elif method not in _READING and self._foreign(headers):
+            detail = "Another site's page may not change anything here: use this site's own pages, or a program."
+            await respond(Request(scope), 403, detail)(scope, receive, send)
+        else:
+            await self.app(scope, receive, send)
+
+    def _foreign(self, headers: Headers) -> bool:
+        origin = headers.get("origin")
+        if self.public_origin is not None and origin == self.public_origin:
+            return False
+        site = headers.get("sec-fetch-site")
+        if site is not None:
+            return site not in {"same-origin", "none"}
+        return origin is not None and urlsplit(origin).netloc != headers.get("host")

@@ -1,0 +1,153 @@
+"""How errors are answered: RFC 9457 problems under ``/api``, pages elsewhere; and which status code each one has."""
+
+from collections.abc import Callable, Mapping, Sequence
+from http import HTTPStatus
+from typing import Any
+
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from starlette.exceptions import HTTPException
+from starlette.requests import ClientDisconnect
+from starlette.responses import JSONResponse, Response
+from starlette.routing import Match
+
+from app import errors
+from app.web.security import API_PREFIX, security_headers
+
+MEDIA_TYPE = "application/problem+json"
+RETRY_SECONDS = 10
+
+STATUS: dict[type[errors.AppError], int] = {
+    errors.InvalidInputError: 422,
+    errors.BrokenFileError: 422,
+    errors.UnsupportedFormatError: 415,
+    errors.TooLargeError: 413,
+    errors.NotFoundError: 404,
+    errors.DeletedError: 410,
+    errors.ForbiddenError: 403,
+    errors.ConflictError: 409,
+    errors.CancelledError: 409,
+    errors.TimeLimitError: 422,
+    errors.BusyError: 503,
+}
+
+_TITLES = {413: "Content Too Large", 422: "Unprocessable Content"}  # RFC 9110's names, which Python has from 3.13 on
+_DETAILS = {
+    400: "The request could not be read: check its body and its Content-Type.",
+    404: "There is nothing at this address.",
+    405: "This address does not answer this method; the Allow header names those that it does.",
+    500: "Something went wrong on our side. It has been logged; trying again may help.",
+}
+
+RenderError = Callable[[Request, int, str, str], Response]
+
+
+def status_of(error: errors.AppError) -> int:
+    """Give the status code of an error's meaning."""
+    return next((STATUS[kind] for kind in type(error).__mro__ if kind in STATUS), 500)
+
+
+def title(status: int) -> str:
+    """Name a status code."""
+    return _TITLES.get(status) or HTTPStatus(status).phrase
+
+
+def problem(
+    status: int,
+    detail: str,
+    *,
+    faults: Sequence[Mapping[str, str]] = (),
+    headers: Mapping[str, str] | None = None,
+) -> Response:
+    """Make an ``application/problem+json`` answer; ``faults`` name the fields at fault: ``{"field", "message"}``."""
+    body: dict[str, Any] = {"type": "about:blank", "title": title(status), "status": status, "detail": detail}
+    if faults:
+        body["errors"] = [dict(fault) for fault in faults]
+    return JSONResponse(body, status, {"Cache-Control": "no-store", **(headers or {})}, media_type=MEDIA_TYPE)
+
+
+def respond(
+    request: Request,
+    status: int,
+    detail: str,
+    *,
+    faults: Sequence[Mapping[str, str]] = (),
+    headers: Mapping[str, str] | None = None,
+) -> Response:
+    """Make a problem for a program, a page for a person: by the address that was asked for."""
+    if request.scope["path"].startswith(API_PREFIX):
+        return problem(status, detail, faults=faults, headers=headers)
+    render: RenderError = request.app.state.render_error
+    response = render(request, status, title(status), detail)
+    response.headers.update(headers or {})
+    return response
+
+
+async def _app_error(request: Request, error: Exception) -> Response:
+    assert isinstance(error, errors.AppError)
+    status = status_of(error)
+    field = getattr(error, "field", None)
+    return respond(
+        request,
+        status,
+        error.message,
+        faults=[{"field": field, "message": error.message}] if field else [],
+        headers={"Retry-After": str(RETRY_SECONDS)} if status == 503 else None,
+    )
+
+
+async def _validation_error(request: Request, error: Exception) -> Response:
+    assert isinstance(error, RequestValidationError)
+    found = error.errors()
+    if any(fault["type"] == "json_invalid" for fault in found):
+        position = found[0]["loc"][-1]
+        return respond(request, 400, f"The body is not valid JSON: {found[0]['ctx']['error']} at character {position}.")
+    if any(fault["loc"][0] == "path" for fault in found):
+        return respond(request, 404, _DETAILS[404])
+    faults = [{"field": ".".join(str(part) for part in fault["loc"][1:]), "message": fault["msg"]} for fault in found]
+    first = faults[0]
+    where = f"{first['field']}: " if first["field"] else ""
+    more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
+    return respond(request, 422, f"{where}{first['message']}.{more}", faults=faults)
+
+
+async def _http_error(request: Request, error: Exception) -> Response:
+    assert isinstance(error, HTTPException)
+    status, headers = error.status_code, dict(error.headers or {})
+    if status in {204, 304}:
+        return Response(status_code=status, headers=headers)
+    if status == 405:
+        headers["Allow"] = ", ".join(_allowed(request))
+    own_words = error.detail and error.detail != HTTPStatus(status).phrase
+    return respond(request, status, error.detail if own_words else _DETAILS.get(status, error.detail), headers=headers)
+
+
+def _allowed(request: Request) -> list[str]:
+    """Every method this address answers: Starlette's own header names those of one route only."""
+    methods = [
+        method
+        for method in ("GET", "POST", "PUT", "PATCH", "DELETE")
+        if any(route.matches({**request.scope, "method": method})[0] is Match.FULL for route in request.app.routes)
+    ]
+    return ["GET", "HEAD", *methods[1:]] if methods[:1] == ["GET"] else methods
+
+
+async def _unexpected(request: Request, _error: Exception) -> Response:
+    """Answer without internals (the server logs them), with the headers that no middleware adds to this answer."""
+    path = request.scope["path"]
+    return respond(request, 500, _DETAILS[500], headers=dict(security_headers(path)))
+
+
+async def _gone_away(_request: Request, _error: Exception) -> Response:
+    """Answer who hung up while sending: nobody reads this, and it is no error of ours."""
+    return Response(status_code=400)
+
+
+def install(app: FastAPI, render_error: RenderError) -> None:
+    """Register the handlers; ``render_error`` makes the page of an error outside ``/api``."""
+    app.state.render_error = render_error
+    app.add_exception_handler(errors.AppError, _app_error)
+    app.add_exception_handler(RequestValidationError, _validation_error)
+    app.add_exception_handler(HTTPException, _http_error)
+    app.add_exception_handler(ClientDisconnect, _gone_away)
+    app.add_exception_handler(Exception, _unexpected)

@@ -1,0 +1,172 @@
+"""Receives a form with one file, the file straight to disk under the data directory."""
+
+import tempfile
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, BinaryIO
+
+import anyio.to_thread
+from fastapi import Request
+from python_multipart.exceptions import FormParserError
+from python_multipart.multipart import MultipartParser, parse_options_header
+from starlette.exceptions import HTTPException
+
+from app.errors import TooLargeError
+from app.web.deps import get_settings
+from app.web.limits import size
+
+if TYPE_CHECKING:
+    from python_multipart.multipart import MultipartCallbacks
+
+MAX_FIELDS = 64
+MAX_FIELD_BYTES = 16 * 1024
+INCOMING = "incoming"
+
+
+@dataclass
+class Form:
+    """A received form: text fields by name (the last of several wins), and the file, gone when the route returns."""
+
+    fields: dict[str, str] = field(default_factory=dict)
+    file: Path | None = None
+    filename: str | None = None
+
+
+class _Parts:
+    """What the parser calls: keeps fields, collects the file's bytes in ``pending`` until they are written."""
+
+    def __init__(self) -> None:
+        self.fields: dict[str, str] = {}
+        self.filename: str | None = None
+        self.pending: list[bytes] = []
+        self.complete = False
+        self._disposition = b""
+        self._header = bytearray()
+        self._value = bytearray()
+        self._name = ""
+        self._text: bytearray | None = None
+
+    def callbacks(self) -> "MultipartCallbacks":
+        return {
+            "on_part_begin": self.on_part_begin,
+            "on_header_field": self.on_header_field,
+            "on_header_value": self.on_header_value,
+            "on_header_end": self.on_header_end,
+            "on_headers_finished": self.on_headers_finished,
+            "on_part_data": self.on_part_data,
+            "on_part_end": self.on_part_end,
+            "on_end": self.on_end,
+        }
+
+    def on_part_begin(self) -> None:
+        self._disposition = b""
+
+    def on_header_field(self, data: bytes, start: int, end: int) -> None:
+        self._header += data[start:end]
+
+    def on_header_value(self, data: bytes, start: int, end: int) -> None:
+        self._value += data[start:end]
+
+    def on_header_end(self) -> None:
+        if self._header.lower() == b"content-disposition":
+            self._disposition = bytes(self._value)
+        self._header.clear()
+        self._value.clear()
+
+    def on_headers_finished(self) -> None:
+        _, options = parse_options_header(self._disposition)
+        if b"name" not in options:
+            raise HTTPException(400, "A part of the form has no name.")
+        self._name = _decoded(options[b"name"])
+        if b"filename" not in options:
+            if len(self.fields) >= MAX_FIELDS:
+                raise HTTPException(400, f"The form has more than {MAX_FIELDS} fields.")
+            self._text = bytearray()
+            return
+        self._text = None
+        if self._name != "file" or self.filename is not None:
+            raise HTTPException(400, "The form has one file, in the field 'file'.")
+        self.filename = _decoded(options[b"filename"])
+
+    def on_part_data(self, data: bytes, start: int, end: int) -> None:
+        if self._text is None:
+            self.pending.append(data[start:end])
+        elif len(self._text) + end - start > MAX_FIELD_BYTES:
+            raise HTTPException(400, f"The form's field {self._name!r} is longer than {size(MAX_FIELD_BYTES)}.")
+        else:
+            self._text += data[start:end]
+
+    def on_part_end(self) -> None:
+        if self._text is not None:
+            self.fields[self._name] = _decoded(bytes(self._text))
+
+    def on_end(self) -> None:
+        self.complete = True
+
+    def taken(self) -> bytes:
+        data = b"".join(self.pending)
+        self.pending.clear()
+        return data
+
+
+@asynccontextmanager
+async def receive_form(request: Request) -> AsyncIterator[Form]:
+    """Receive a ``multipart/form-data`` body with at most one file, in the field ``file``.
+
+    Raises
+    ------
+    TooLargeError
+        If the file has more bytes than the settings allow; it is then not on the disk any more.
+    HTTPException
+        400 for a malformed form, 415 for a body of another kind.
+    """
+    kind, options = parse_options_header(request.headers.get("content-type"))
+    if kind != b"multipart/form-data":
+        raise HTTPException(415, "Send the file as multipart/form-data, in the field 'file'.")
+    if not options.get(b"boundary"):
+        raise HTTPException(400, "The Content-Type of the form names no boundary.")
+    target = await anyio.to_thread.run_sync(_open, get_settings(request).data_dir / INCOMING)
+    path = Path(target.name)
+    try:
+        yield await _read(request, options[b"boundary"], target)
+    finally:
+        target.close()
+        path.unlink(missing_ok=True)
+
+
+async def _read(request: Request, boundary: bytes, target: BinaryIO) -> Form:
+    parts = _Parts()
+    limit, written = get_settings(request).max_upload_bytes, 0
+    try:
+        parser = MultipartParser(boundary, parts.callbacks())
+        async for chunk in request.stream():
+            parser.write(chunk)
+            if data := parts.taken():
+                written += len(data)
+                if (
+                    written <= limit
+                ):  # what is more is read to its end, so that the client sees the answer, but not kept
+                    await anyio.to_thread.run_sync(target.write, data)
+    except FormParserError:
+        raise HTTPException(400, "The form is malformed: it does not follow multipart/form-data.") from None
+    if written > limit:
+        raise TooLargeError(f"The file is larger than {size(limit)}: send a smaller one.")
+    if not parts.complete:
+        raise HTTPException(400, "The form ends in the middle: send it again.")
+    await anyio.to_thread.run_sync(target.flush)
+    has_file = bool(parts.filename) or written > 0  # a browser sends an empty part when no file was chosen
+    return Form(parts.fields, Path(target.name) if has_file else None, parts.filename or None)
+
+
+def _open(directory: Path) -> BinaryIO:
+    directory.mkdir(parents=True, exist_ok=True)
+    return tempfile.NamedTemporaryFile(dir=directory, prefix="upload-", delete=False)  # type: ignore[return-value]
+
+
+def _decoded(text: bytes) -> str:
+    try:
+        return text.decode()
+    except UnicodeDecodeError:
+        raise HTTPException(400, "The form's text is not UTF-8.") from None
