@@ -1,0 +1,90 @@
+// The parameters beside the photograph: sizes that follow the crop, new seeds, and an address that keeps all of it, so that
+// Back, reload and a bookmark find the form as it was.
+
+const SEEDS = 1_000_000;
+const form = document.querySelector("#experiment");
+const { size, width, height, seed } = form.elements;
+const crop = Object.fromEntries(["x", "y", "width", "height"].map((side) => [side, form.elements[`crop.${side}`]]));
+const total = document.querySelector("#run-size");
+let pending = 0;
+
+const chosen = () => form.elements.method.value;
+const own = (method) => [...form.elements].filter((entry) => entry.name.startsWith(`${method}.`));
+
+function followCrop() {
+  if (size.value !== "free") {
+    const factor = Number(size.value);
+    width.value = Math.floor(Number(crop.width.value) * factor + 0.5);
+    height.value = Math.floor(Number(crop.height.value) * factor + 0.5);
+  }
+  const [w, h] = [width.value || crop.width.value, height.value || crop.height.value];
+  total.textContent = `${chosen().toUpperCase()}, ${w} × ${h} pixels`;
+  clearTimeout(pending);
+  pending = setTimeout(keepInAddress, 250);
+}
+
+function keepInAddress() {
+  const query = new URLSearchParams();
+  query.set("method", chosen());
+  query.set("crop", ["x", "y", "width", "height"].map((side) => crop[side].value).join(","));
+  if (size.value !== "1") query.set("size", size.value);
+  if (size.value === "free") {
+    if (width.value) query.set("width", width.value);
+    if (height.value) query.set("height", height.value);
+  }
+  if (seed.value) query.set("seed", seed.value);
+  for (const entry of own(chosen())) {
+    const value = entry.type === "checkbox" ? (entry.checked ? "on" : "") : entry.value;
+    if (value !== entry.dataset.default) query.set(entry.name.slice(chosen().length + 1), value);
+  }
+  const path = `/samples/${encodeURIComponent(form.elements.sample.value)}`;
+  history.replaceState(history.state, "", `${path}?${query.toString().replaceAll("%2C", ",")}`);
+}
+
+let before = chosen();
+function carryOver() {
+  // What two methods both have keeps its value when one switches between them.
+  for (const old of own(before)) {
+    const same = form.elements[`${chosen()}.${old.name.slice(before.length + 1)}`];
+    if (!same || same.type !== old.type) continue;
+    if (same.type === "checkbox") same.checked = old.checked;
+    else same.value = old.value;
+  }
+  const open = document.querySelector(`#method-${before} ~ .own details`)?.open;
+  const details = document.querySelector(`#method-${chosen()} ~ .own details`);
+  if (details && open) details.open = true;
+  before = chosen();
+}
+
+for (const entry of [width, height]) {
+  entry.addEventListener("input", () => {
+    size.value = "free";
+  });
+}
+form.addEventListener("crop", followCrop);
+form.addEventListener("input", followCrop);
+form.addEventListener("change", (event) => {
+  if (event.target.name === "method") carryOver();
+  followCrop();
+});
+
+const reroll = document.querySelector("#reroll");
+reroll.hidden = false;
+reroll.addEventListener("click", () => {
+  seed.value = crypto.getRandomValues(new Uint32Array(1))[0] % SEEDS;
+  followCrop();
+});
+
+// One press, one experiment; whoever comes back may press again.
+let sent = false;
+form.addEventListener("submit", (event) => {
+  if (sent) event.preventDefault();
+  sent = true;
+  clearTimeout(pending);
+  keepInAddress();
+});
+window.addEventListener("pageshow", () => {
+  sent = false;
+  before = chosen();
+});
+followCrop();
