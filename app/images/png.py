@@ -1,6 +1,6 @@
-"""PNG files written fast: strips are filtered and deflated on their own, in any order and from any thread, then joined.
+"""PNG files written fast: strips are filtered and deflated on their own, in any order, from any thread, then joined.
 
-Every strip is a sequence of whole deflate blocks that ends on a byte border and refers to nothing outside itself, so that
+Every strip is a sequence of whole deflate blocks that ends on a byte border and refers to nothing outside itself, so
 the strips one after the other are one deflate stream. Its rows carry the PNG filter Average, but the first one, which
 cannot see the row above, carries Sub. On noise-like pictures that is as small as trying every filter, at a fraction of
 the cost.
@@ -9,11 +9,13 @@ the cost.
 import struct
 from concurrent.futures import ThreadPoolExecutor
 from threading import Lock
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from isal import isal_zlib
 from numpy.typing import NDArray
+
+Pixels = NDArray[np.unsignedinteger[Any]]
 
 DTYPES = {8: np.dtype(np.uint8), 16: np.dtype(np.uint16)}
 COLOUR_TYPES = {1: 0, 2: 4, 3: 2, 4: 6}  # grey, grey + alpha, RGB, RGBA
@@ -68,7 +70,7 @@ class PngWriter:
         self._strips: dict[int, _Strip] = {}
         self._lock = Lock()
 
-    def write(self, y: int, block: NDArray[np.uint8] | NDArray[np.uint16]) -> None:
+    def write(self, y: int, block: Pixels) -> None:
         """Add the rows from ``y`` on.
 
         Parameters
@@ -126,7 +128,7 @@ class PngWriter:
         return b"".join(pieces)
 
 
-def encode_png(array: NDArray[np.uint8] | NDArray[np.uint16], threads: int = 1) -> bytes:
+def encode_png(array: Pixels, threads: int = 1) -> bytes:
     """Write a whole picture as PNG.
 
     Parameters
@@ -171,7 +173,7 @@ def adler32_combine(first: int, second: int, length: int) -> int:
     return high % ADLER_BASE << 16 | low % ADLER_BASE
 
 
-def _strip(block: NDArray[np.uint8] | NDArray[np.uint16], pixel: int) -> _Strip:
+def _strip(block: Pixels, pixel: int) -> _Strip:
     """Filter and deflate a block whose pixels have ``pixel`` bytes."""
     big_endian = np.ascontiguousarray(block, block.dtype.newbyteorder(">"))
     raw = big_endian.view(np.uint8).reshape(len(block), -1)

@@ -1,0 +1,153 @@
+"""A process that decodes uploads in children that may be killed; `app.images.intake` starts it with ``python -m``.
+
+It imports the decoders once and forks one child for each upload, so that a child costs milliseconds. A child is limited
+in memory and CPU time by the kernel, and killed when its time is over. No process outlives its parent: this one ends
+when its socket closes, and the kernel then kills the children. Linux only.
+
+The socket (file descriptor 0) receives one JSON request per message, with a socket to answer on. The answer is at most
+two lines: what the child says, then how it ended.
+"""
+
+import ctypes
+import json
+import logging
+import math
+import os
+import resource
+import selectors
+import signal
+import socket
+import sys
+import time
+import traceback
+import warnings
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import imagecodecs
+from PIL import Image
+
+from app.errors import AppError
+from app.images.decode import Limits, decode, to_png
+
+MESSAGE_BYTES = 1 << 16
+PR_SET_PDEATHSIG = 1
+LATE_IMPORTS = ("png_decode", "cms_transform", "jpeg8_decode", "lzw_decode", "zlib_decode", "packbits_decode")
+PAGE = resource.getpagesize()
+
+
+@dataclass(frozen=True)
+class _Child:
+    pid: int
+    answer: socket.socket
+    deadline: float
+
+
+def request(path: Path, destination: Path, limits: Limits) -> bytes:
+    """Ask for ``path`` to be decoded into a PNG file at ``destination``."""
+    return json.dumps({"path": str(path), "destination": str(destination), "limits": asdict(limits)}).encode()
+
+
+def serve(control: socket.socket) -> None:
+    """Answer requests until the other end of the socket is closed."""
+    children: dict[int, _Child] = {}
+    with selectors.DefaultSelector() as selector:
+        selector.register(control, selectors.EVENT_READ)
+        while True:
+            now = time.monotonic()
+            next_deadline = min((child.deadline for child in children.values()), default=math.inf)
+            ready = selector.select(None if math.isinf(next_deadline) else max(0.0, next_deadline - now))
+            for key, _ in ready:
+                if key.fileobj is not control:
+                    selector.unregister(key.fileobj)
+                    _end(key.fd, children.pop(key.fd))
+                    continue
+                message, descriptors, _, _ = socket.recv_fds(control, MESSAGE_BYTES, 1)
+                if not message:
+                    return
+                watch, child = _start(message, socket.socket(fileno=descriptors[0]))
+                children[watch] = child
+                selector.register(watch, selectors.EVENT_READ)
+            for child in children.values():
+                if child.deadline <= time.monotonic():
+                    # It is not reaped yet, so the number cannot be another process's.
+                    os.kill(child.pid, signal.SIGKILL)
+
+
+def _start(message: bytes, answer: socket.socket) -> tuple[int, _Child]:
+    asked = json.loads(message)
+    limits = Limits(**asked["limits"])
+    server = os.getpid()
+    pid = os.fork()
+    if pid == 0:
+        try:
+            _confine(server, limits)
+            _say(answer, _work(Path(asked["path"]), Path(asked["destination"]), limits))
+        finally:
+            os._exit(0)
+    return os.pidfd_open(pid), _Child(pid, answer, time.monotonic() + limits.seconds)
+
+
+def _end(watch: int, child: _Child) -> None:
+    os.close(watch)
+    _, status = os.waitpid(child.pid, 0)
+    late = time.monotonic() >= child.deadline or (os.WIFSIGNALED(status) and os.WTERMSIG(status) == signal.SIGXCPU)
+    _say(child.answer, {"ended": "late" if late else "killed" if os.WIFSIGNALED(status) else "itself"})
+    child.answer.close()
+
+
+def _say(answer: socket.socket, what: dict[str, Any]) -> None:
+    try:
+        answer.sendall(json.dumps(what).encode() + b"\n")
+    except BrokenPipeError:
+        return  # nobody waits for it any more
+
+
+def _confine(server: int, limits: Limits) -> None:
+    """Limit this process, which is to decode one file."""
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+    if os.getppid() != server:
+        os._exit(1)
+    mapped = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0]) * PAGE
+    resource.setrlimit(resource.RLIMIT_AS, (mapped + limits.memory, mapped + limits.memory))
+    resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(limits.seconds) + 1, math.ceil(limits.seconds) + 2))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    Image.MAX_IMAGE_PIXELS = limits.pixels
+    warnings.simplefilter("error", Image.DecompressionBombWarning)
+
+
+def _work(path: Path, destination: Path, limits: Limits) -> dict[str, Any]:
+    try:
+        picture = decode(path, limits)
+        destination.write_bytes(to_png(picture))
+    except AppError as error:
+        return {"error": type(error).__name__, "message": error.message}
+    except MemoryError:
+        return {"error": "MemoryError"}
+    except Exception:
+        traceback.print_exc()
+        return {"error": "Exception"}
+    height, width, channels = picture.pixels.shape
+    return {
+        "width": width,
+        "height": height,
+        "channels": channels,
+        "depth": picture.depth,
+        "transparent": picture.alpha is not None,
+    }
+
+
+def _warm_up() -> None:
+    """Load what the libraries put off until it is used, so that not every child has to."""
+    Image.preinit()
+    for name in LATE_IMPORTS:
+        getattr(imagecodecs, name)
+
+
+if __name__ == "__main__":
+    logging.disable()  # tifffile logs what is wrong with every broken file
+    # Its parent's Ctrl-C is not for this process: it ends when its parent does.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    _warm_up()
+    serve(socket.socket(fileno=sys.stdin.fileno()))

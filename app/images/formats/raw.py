@@ -1,0 +1,63 @@
+"""What every decoder gives back, and the checks they share."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from PIL import Image
+
+from app.errors import BrokenFileError, TooLargeError
+from app.images.png import Pixels
+
+EXIF_ORIENTATION = 0x0112
+DAMAGED = "This {} file is damaged or incomplete: open it in an image editor, save it again and upload the new file."
+
+
+@dataclass(frozen=True)
+class Raw:
+    """A picture as its file holds it: not yet upright, not yet sRGB.
+
+    ``pixels`` is (H, W, C), uint8 or uint16 over the whole range of its type; C is 1 grey, 3 RGB or 4 CMYK (0 is no
+    ink). ``alpha`` is (H, W) of the same type, not premultiplied, or None. ``profile`` is an ICC profile;
+    ``orientation`` is EXIF's, 1 to 8.
+    """
+
+    pixels: Pixels
+    alpha: Pixels | None = None
+    profile: bytes | None = None
+    orientation: int = 1
+
+
+def check_size(width: int, height: int, max_pixels: int, name: str) -> None:
+    """Refuse a picture by what its header says, before a pixel is decoded.
+
+    Raises
+    ------
+    BrokenFileError
+        If it has no pixels.
+    TooLargeError
+        If it has more than ``max_pixels``.
+    """
+    if width < 1 or height < 1:
+        raise BrokenFileError(DAMAGED.format(name))
+    if width * height > max_pixels:
+        raise TooLargeError(
+            f"The picture has {width} × {height} pixels ({width * height / 1e6:,.1f} megapixels); "
+            f"at most {max_pixels / 1e6:,.1f} megapixels are accepted. Crop it or make it smaller, and upload it again."
+        )
+
+
+def with_channels(array: Pixels) -> tuple[Pixels, Pixels | None]:
+    """Split (H, W) or (H, W, 1–4) into colour (H, W, 1 or 3) and alpha."""
+    if array.ndim == 2:
+        return array[..., None], None
+    if array.shape[2] in (2, 4):
+        return array[..., :-1], array[..., -1]
+    return array, None
+
+
+def orientation(read: Callable[[], Image.Exif]) -> int:
+    """EXIF orientation of what ``read`` gives, 1 (upright) if that is broken: no reason to refuse a picture."""
+    try:
+        return int(read().get(EXIF_ORIENTATION, 1))
+    except Exception:  # Pillow raises whatever it likes on broken EXIF
+        return 1

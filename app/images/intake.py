@@ -1,0 +1,181 @@
+"""Taking in an upload: a process that may be killed decodes it, and what is kept is a PNG file of our own making."""
+
+import json
+import os
+import socket
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from threading import BoundedSemaphore, Lock
+from typing import Any
+
+from app.errors import AppError, BrokenFileError, BusyError, TooLargeError, UnsupportedFormatError
+from app.images import decode_server
+from app.images.decode import Limits
+
+AT_ONCE = 2
+WAIT_SECONDS = 60.0
+GRACE_SECONDS = 10.0  # the server kills its children itself; this much later it must be hung
+ROOT = Path(__file__).resolve().parents[2]
+ERRORS: dict[str, type[AppError]] = {
+    error.__name__: error for error in (BrokenFileError, TooLargeError, UnsupportedFormatError)
+}
+
+
+@dataclass(frozen=True)
+class Intake:
+    """A stored picture: upright, in sRGB, without metadata.
+
+    ``path`` is a PNG file of ``depth`` (8 or 16) bits; ``channels`` counts colour channels, 1 or 3; if ``transparent``,
+    an alpha channel follows them.
+    """
+
+    path: Path
+    width: int
+    height: int
+    channels: int
+    depth: int
+    transparent: bool
+
+
+class DecodingServer:
+    """The process that forks the decoders: started when needed, and again when it died."""
+
+    def __init__(self) -> None:
+        self._lock = Lock()
+        self._process: subprocess.Popen[bytes] | None = None
+        self._control: socket.socket | None = None
+
+    def start(self) -> None:
+        """Start it without waiting for it, so that the first upload need not."""
+        with self._lock:
+            self._ensure_running()
+
+    def ask(self, message: bytes) -> socket.socket:
+        """Send a request and return the socket on which the answer comes."""
+        ours, theirs = socket.socketpair()
+        with theirs, self._lock:
+            try:
+                socket.send_fds(self._ensure_running(), [message], [theirs.fileno()])
+            except OSError:
+                # It died since it was looked at.
+                self._stop()
+                socket.send_fds(self._ensure_running(), [message], [theirs.fileno()])
+        return ours
+
+    def stop(self) -> None:
+        """End it, and every decoder with it."""
+        with self._lock:
+            self._stop()
+
+    def _ensure_running(self) -> socket.socket:
+        if self._process is None or self._control is None or self._process.poll() is not None:
+            self._stop()
+            self._control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+            with theirs:
+                self._process = subprocess.Popen(  # noqa: S603 - our own interpreter and module
+                    [sys.executable, "-m", decode_server.__name__],
+                    stdin=theirs.fileno(),
+                    stdout=subprocess.DEVNULL,
+                    cwd=ROOT,
+                    env=os.environ | {"OPENBLAS_NUM_THREADS": "1"},  # a process that forks has better only one thread
+                    start_new_session=True,
+                )
+        return self._control
+
+    def _stop(self) -> None:
+        if self._control is not None:
+            self._control.close()
+        if self._process is not None:
+            self._process.kill()
+            self._process.wait()
+        self._process = self._control = None
+
+
+server = DecodingServer()
+_turn = BoundedSemaphore(AT_ONCE)
+
+
+def intake(path: Path, directory: Path, limits: Limits) -> Intake:
+    """Decode an upload in a process of its own and store it as PNG. Thread-safe; blocks.
+
+    Parameters
+    ----------
+    path : Path
+        The uploaded file; it is only read.
+    directory : Path
+        Where the PNG file is written, under a temporary name. The caller moves or removes it.
+    limits : Limits
+
+    Returns
+    -------
+    Intake
+
+    Raises
+    ------
+    UnsupportedFormatError, BrokenFileError, TooLargeError
+        As `app.images.decode.decode`; also if decoding takes more seconds or more memory than the limits allow.
+    BusyError
+        If others have been decoded for a minute and none came to an end.
+    """
+    if not _turn.acquire(timeout=WAIT_SECONDS):
+        raise BusyError("Many pictures are being read at the moment: try again in a minute.")
+    try:
+        descriptor, name = tempfile.mkstemp(prefix="intake-", suffix=".png", dir=directory.resolve())
+        os.close(descriptor)
+        stored = Path(name)
+        try:
+            return Intake(stored, **_decoded(decode_server.request(path.resolve(), stored, limits), limits))
+        except BaseException:
+            stored.unlink(missing_ok=True)
+            raise
+    finally:
+        _turn.release()
+
+
+def _decoded(message: bytes, limits: Limits) -> dict[str, Any]:
+    said: dict[str, Any] = {}
+    for _ in range(2):  # once more if the server was killed: nothing is known of the file then
+        said = _answer(message, limits)
+        if said:
+            break
+    if "width" in said:
+        del said["ended"]
+        return said
+    if error := ERRORS.get(said.get("error", "")):
+        raise error(said["message"])
+    if said.get("error") == "MemoryError":
+        raise TooLargeError(
+            f"Decoding this picture takes more than the {limits.memory / (1 << 20):,.0f} MB of memory that it may use: "
+            "make it smaller, or save it as an ordinary PNG or JPEG, and upload it again."
+        )
+    if said.get("ended") == "late":
+        raise TooLargeError(
+            f"Decoding this picture takes more than the {limits.seconds:g} seconds that it may: "
+            "save it as an ordinary (not progressive) JPEG or as PNG, and upload it again."
+        )
+    raise BrokenFileError(
+        "The decoder failed on this file; it is probably damaged. "
+        "Open it in an image editor, save it again and upload the new file."
+    )
+
+
+def _answer(message: bytes, limits: Limits) -> dict[str, Any]:
+    """Collect what the child and the server say; nothing if the server dies."""
+    said: dict[str, Any] = {}
+    with server.ask(message) as answer:
+        answer.settimeout(limits.seconds + GRACE_SECONDS)
+        try:
+            with answer.makefile("rb") as lines:
+                for line in lines:
+                    said |= json.loads(line)
+                    if "ended" in said:
+                        return said
+        except TimeoutError:
+            server.stop()
+            return {"ended": "late"}
+        except OSError:
+            pass
+    return {}
