@@ -8,9 +8,10 @@ from app.errors import AppError, InvalidInputError
 from app.experiments.model import Experiment, Sample
 from app.experiments.submission import NewExperiment, NewInput
 from app.images.crop import Rectangle
+from app.methods.fields import fields
 from app.methods.model import Method
 from app.methods.registry import METHODS
-from app.web.forms import SHARED, fields, form_name, parse
+from app.web.forms import SHARED, form_name, parse
 
 CROP = ("crop.x", "crop.y", "crop.width", "crop.height")
 SIZES = {

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal
 from urllib.parse import urlencode
 
 from fastapi import APIRouter, Form, Query, Request
-from fastapi.responses import FileResponse, RedirectResponse
+from fastapi.responses import RedirectResponse
 from starlette.responses import Response
 
 from app.errors import NotFoundError
@@ -15,11 +15,11 @@ from app.experiments.model import Experiment, Status
 from app.experiments.ownership import new_token
 from app.experiments.service import Service
 from app.experiments.submission import NewExperiment, NewInput
+from app.methods.fields import fields
 from app.methods.model import Method
 from app.methods.registry import METHODS, method
 from app.web.deps import ServiceDep, TokenDep, base_url, remember_owner
 from app.web.drafts import address
-from app.web.forms import fields
 from app.web.snippets import snippets
 from app.web.templating import render
 
@@ -77,7 +77,7 @@ def experiment_page(
     }
     if experiment.status is Status.SUCCEEDED:
         context |= {
-            "preview": f"{base}/experiments/{experiment.id}/preview",
+            "preview": f"{base}/api/v1/experiments/{experiment.id}/outputs/.preview",
             "panes": [
                 _pane(experiment, "crop", "Sample"),
                 _pane(experiment, "texture", experiment.method.upper()),
@@ -124,14 +124,15 @@ def _steps(experiment: Experiment) -> Iterator[Pane]:
             yield _pane(experiment, output.name, output.title)
 
 
-def _downloads(experiment: Experiment) -> Iterator[tuple[str, str, str]]:
+def _downloads(experiment: Experiment) -> Iterator[tuple[str, str]]:
     address = f"/api/v1/experiments/{experiment.id}/outputs"
-    stem = f"{experiment.method}-{experiment.id}"
-    yield "PNG, 8 bit", f"{address}/texture?format=png&depth=8", f"{stem}.png"
-    yield "PNG, 16 bit", f"{address}/texture?format=png&depth=16", f"{stem}-16.png"
-    for name, extension in (("JPEG", "jpg"), ("WebP", "webp"), ("TIFF", "tiff")):
-        yield name, f"{address}/texture?format={name.lower()}", f"{stem}.{extension}"
-    yield "Everything, ZIP", f"{address}.zip", f"{stem}.zip"
+    texture = f"{address}/texture?download=true"
+    yield "PNG, 8 bit", f"{texture}&format=png&depth=8"
+    yield "PNG, 16 bit", f"{texture}&format=png&depth=16"
+    yield "JPEG", f"{texture}&format=jpeg"
+    yield "WebP", f"{texture}&format=webp"
+    yield "TIFF", f"{texture}&format=tiff"
+    yield "Everything, ZIP", f"{address}.zip"
 
 
 def _timings(experiment: Experiment) -> Iterator[tuple[str, str, str]]:
@@ -143,22 +144,6 @@ def _timings(experiment: Experiment) -> Iterator[tuple[str, str, str]]:
 
 def _fits(other: Method, declared: Method) -> bool:
     return len(other.inputs) == len(declared.inputs)
-
-
-@router.get("/experiments/{experiment_id}/thumbnail/{name}")
-def thumbnail(experiment_id: str, name: Literal["crop", "texture"], service: ServiceDep) -> Response:
-    return _hidden(service, experiment_id, f".thumbnail-{name}")
-
-
-@router.get("/experiments/{experiment_id}/preview")
-def preview(experiment_id: str, service: ServiceDep) -> Response:
-    return _hidden(service, experiment_id, ".preview")
-
-
-def _hidden(service: Service, experiment_id: str, name: str) -> Response:
-    output, path = service.output(experiment_id, name)
-    headers = {"Cache-Control": "private, max-age=3600"}  # not for ever: its owner may delete it
-    return FileResponse(path, media_type=output.media_type, headers=headers)
 
 
 @router.get("/compare/{first_id}/{second_id}")

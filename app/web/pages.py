@@ -12,6 +12,7 @@ from app.errors import AppError, InvalidInputError
 from app.experiments.model import Sample
 from app.experiments.ownership import new_token
 from app.experiments.service import Service
+from app.methods.fields import fields
 from app.methods.model import Method, StillParams
 from app.methods.registry import METHODS, method
 from app.samples import BundledSample, bundled
@@ -25,8 +26,8 @@ from app.web.deps import (
     remember_owner,
 )
 from app.web.drafts import SIZES, Draft, opened, refused, sent
-from app.web.forms import fields, form_name, own_fields
-from app.web.problems import STATUS
+from app.web.forms import form_name, own_fields
+from app.web.problems import status_of
 from app.web.templating import render
 from app.web.uploads import receive_form
 
@@ -57,11 +58,6 @@ def render_error(request: Request, status: int, title: str, detail: str) -> Resp
     return render(
         request, "error.html", {"status": status, "title": WORDS.get(status, title), "detail": detail}, status
     )
-
-
-def status_of(error: AppError) -> int:
-    """Give the HTTP status of an error's meaning."""
-    return next(STATUS[kind] for kind in type(error).__mro__ if kind in STATUS)
 
 
 @router.get("/")
@@ -100,7 +96,7 @@ async def upload(request: Request, service: ServiceDep, settings: SettingsDep, t
 def sample_page(request: Request, sample_id: str, service: ServiceDep, settings: SettingsDep) -> Response:
     sample = service.sample(sample_id)
     entry = _bundled(settings, sample)
-    return _sample(request, sample, opened(sample, entry and entry.crop, request.query_params), entry)
+    return _sample(request, sample, opened(sample, entry.crop if entry else None, request.query_params), entry)
 
 
 def _bundled(settings: Settings, sample: Sample) -> BundledSample | None:

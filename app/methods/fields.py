@@ -1,0 +1,97 @@
+"""What a method's parameters look like from outside: forms, command-line options and pages are made of these fields."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from pydantic import BaseModel
+
+Kind = Literal["integer", "number", "choice", "switch", "text"]
+
+
+@dataclass(frozen=True)
+class FormField:
+    """One parameter as a form asks for it; ``name`` is the parameter's, ``default`` is empty for "as the crop says"."""
+
+    name: str
+    label: str
+    help: str
+    kind: Kind
+    default: str
+    minimum: str = ""
+    maximum: str = ""
+    step: str = ""
+    choices: tuple[str, ...] = ()
+    advanced: bool = False
+
+
+def _text(value: Any) -> str:
+    if value is None:
+        return ""
+    if isinstance(value, bool):
+        return "on" if value else ""
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _kind(schema: Mapping[str, Any]) -> Kind:
+    if "enum" in schema:
+        return "choice"
+    kinds: dict[str, Kind] = {"integer": "integer", "number": "number", "boolean": "switch"}
+    return kinds.get(str(schema.get("type")), "text")
+
+
+def _bound(schema: Mapping[str, Any], *names: str) -> str:
+    return next((_text(schema[name]) for name in names if name in schema), "")
+
+
+def fields(params: type[BaseModel]) -> tuple[FormField, ...]:
+    """Every parameter of a Params class as a form field, in the order of its declaration.
+
+    Examples
+    --------
+    >>> from app.methods.model import StillParams
+    >>> [(field.name, field.kind, field.default, field.minimum) for field in fields(StillParams)]
+    [('width', 'integer', '', '1'), ('height', 'integer', '', '1'), ('seed', 'integer', '0', '0')]
+    """
+    document = params.model_json_schema()
+    found = []
+    for name, declared in document["properties"].items():
+        # An optional value is `anyOf: [what it is, null]`, and an Enum a reference into `$defs`.
+        inner = next((part for part in declared.get("anyOf", ()) if part.get("type") != "null"), declared)
+        if "$ref" in inner:
+            inner = document["$defs"][inner["$ref"].rsplit("/", 1)[-1]]
+        kind = _kind(inner)
+        found.append(
+            FormField(
+                name=name,
+                label=declared.get("title", name),
+                help=declared.get("description", ""),
+                kind=kind,
+                default=_text(declared.get("default")),
+                minimum=_bound(inner, "minimum", "exclusiveMinimum"),
+                maximum=_bound(inner, "maximum", "exclusiveMaximum"),
+                step="1" if kind == "integer" else "any" if kind == "number" else "",
+                choices=tuple(str(choice) for choice in inner.get("enum", ())),
+                advanced=bool(declared.get("advanced", False)),
+            )
+        )
+    return tuple(found)
+
+
+def requirement(entry: FormField) -> str:
+    """Say in one sentence what a field takes.
+
+    Examples
+    --------
+    >>> from app.methods.model import StillParams
+    >>> requirement(fields(StillParams)[0])
+    'Width is a whole number from 1 on.'
+    """
+    if entry.kind == "choice":
+        return f"{entry.label} is one of: {', '.join(entry.choices)}."
+    noun = "a whole number" if entry.kind == "integer" else "a number"
+    if entry.minimum and entry.maximum:
+        return f"{entry.label} is {noun} from {entry.minimum} to {entry.maximum}."
+    if entry.minimum:
+        return f"{entry.label} is {noun} from {entry.minimum} on."
+    return f"{entry.label} is {noun}."
