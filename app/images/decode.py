@@ -9,11 +9,11 @@ import numpy as np
 from app.errors import BrokenFileError, TooLargeError, UnsupportedFormatError
 from app.images.colour import to_srgb
 from app.images.formats import jpeg, png, tiff, webp
-from app.images.formats.raw import Raw
-from app.images.png import Pixels, PngWriter
+from app.images.formats.raw import Raw, is_opaque
+from app.images.png import SIGNATURE, Pixels, PngWriter
 
 MEBIBYTE = 1 << 20
-STRIP_PIXELS = 1 << 18
+STRIP_ROWS, STRIP_PIXELS = 64, 1 << 16  # small strips: a crop is read by strips
 FORMATS = "PNG, JPEG, WebP and TIFF"
 OTHERS = {
     b"GIF8": "a GIF picture",
@@ -40,7 +40,7 @@ class Decoded:
     """A picture, upright and in sRGB.
 
     ``pixels`` is (H, W, C) uint8 or uint16, C 1 (grey) or 3 (RGB); ``alpha`` is (H, W) of the same type, or None if
-    every pixel is opaque.
+    every pixel is opaque (`app.images.formats.raw.is_opaque`).
     """
 
     pixels: Pixels
@@ -85,7 +85,7 @@ def decode(path: Path, limits: Limits) -> Decoded:
             "Open it in an image editor, save it again and upload the new file."
         ) from error
     pixels = _upright(to_srgb(raw.pixels, raw.profile), raw.orientation)
-    opaque = raw.alpha is None or raw.alpha.min() == np.iinfo(raw.alpha.dtype).max
+    opaque = raw.alpha is None or is_opaque(raw.alpha)
     return Decoded(pixels, None if raw.alpha is None or opaque else _upright(raw.alpha, raw.orientation))
 
 
@@ -93,7 +93,7 @@ def to_png(picture: Decoded) -> bytes:
     """Write a picture as PNG: grey or RGB, with an alpha channel if a pixel is not opaque, and no metadata."""
     height, width, channels = picture.pixels.shape
     writer = PngWriter(width, height, channels + (picture.alpha is not None), picture.depth)
-    rows = max(1, STRIP_PIXELS // width)
+    rows = max(STRIP_ROWS, STRIP_PIXELS // width)
     for y in range(0, height, rows):
         strip = picture.pixels[y : y + rows]
         if picture.alpha is not None:
@@ -105,7 +105,7 @@ def to_png(picture: Decoded) -> bytes:
 def _reader(data: bytes) -> Callable[[bytes, int], Raw]:
     if not data:
         raise BrokenFileError("The file is empty: choose it again and upload it once more.")
-    if data.startswith(png.SIGNATURE):
+    if data.startswith(SIGNATURE):
         return png.decode
     if data.startswith(b"\xff\xd8\xff"):
         return jpeg.decode

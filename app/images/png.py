@@ -4,6 +4,9 @@ Every strip is a sequence of whole deflate blocks that ends on a byte border and
 the strips one after the other are one deflate stream. Its rows carry the PNG filter Average, but the first one, which
 cannot see the row above, carries Sub. On noise-like pictures that is as small as trying every filter, at a fraction of
 the cost.
+
+A private chunk, ``stRP``, lists rows, compressed bytes and Adler-32 of every strip, so that `app.images.read` can cut a
+crop out of a large picture without decoding all of it.
 """
 
 import struct
@@ -19,6 +22,10 @@ Pixels = NDArray[np.unsignedinteger[Any]]
 
 DTYPES = {8: np.dtype(np.uint8), 16: np.dtype(np.uint16)}
 COLOUR_TYPES = {1: 0, 2: 4, 3: 2, 4: 6}  # grey, grey + alpha, RGB, RGBA
+SIGNATURE = b"\x89PNG\r\n\x1a\n"
+HEADER = struct.Struct(">IIBBBBB")
+STRIP_TABLE = b"stRP"
+STRIP_ENTRY = struct.Struct(">III")
 SUB, AVERAGE = 1, 3
 RAW_DEFLATE = -15
 LEVEL = 1
@@ -29,7 +36,8 @@ STRIP_BYTES = 1 << 20  # what `encode_png` gives to one thread
 
 class _Strip(NamedTuple):
     rows: int
-    chunk: list[bytes]  # in pieces: joined once, with the whole file
+    pieces: list[bytes]  # joined once, with the whole file
+    size: int
     adler: int
 
 
@@ -114,18 +122,12 @@ class PngWriter:
             adler = adler32_combine(adler, strip.adler, strip.rows * length)
         if below != self.height:
             raise ValueError(f"row {below} was written never")
-        header = struct.pack(">IIBBBBB", self.width, self.height, self.depth, COLOUR_TYPES[self.channels], 0, 0, 0)
-        pieces = [
-            b"\x89PNG\r\n\x1a\n",
-            *_chunk(b"IHDR", header),
-            *_chunk(b"sRGB", b"\0"),
-            *_chunk(b"IDAT", b"\x78\x01"),
-        ]
+        header = HEADER.pack(self.width, self.height, self.depth, COLOUR_TYPES[self.channels], 0, 0, 0)
+        table = b"".join(STRIP_ENTRY.pack(strip.rows, strip.size, strip.adler) for _, strip in strips)
+        pieces = [SIGNATURE, *chunk(b"IHDR", header), *chunk(b"sRGB", b"\0"), *chunk(STRIP_TABLE, table), *FIRST_DATA]
         for _, strip in strips:
-            pieces += strip.chunk
-        # 03 00 is an empty last deflate block.
-        pieces += [*_chunk(b"IDAT", b"\x03\x00", adler.to_bytes(4, "big")), *_chunk(b"IEND")]
-        return b"".join(pieces)
+            pieces += strip.pieces
+        return b"".join([*pieces, *last_data(adler), *chunk(b"IEND")])
 
 
 def encode_png(array: Pixels, threads: int = 1) -> bytes:
@@ -173,6 +175,22 @@ def adler32_combine(first: int, second: int, length: int) -> int:
     return high % ADLER_BASE << 16 | low % ADLER_BASE
 
 
+def chunk(name: bytes, *parts: bytes) -> list[bytes]:
+    """Frame a PNG chunk's content, given in parts; joined, the pieces are the chunk."""
+    checksum = isal_zlib.crc32(name)
+    for part in parts:
+        checksum = isal_zlib.crc32(part, checksum)
+    return [sum(map(len, parts)).to_bytes(4, "big"), name, *parts, checksum.to_bytes(4, "big")]
+
+
+FIRST_DATA = chunk(b"IDAT", b"\x78\x01")  # the zlib header
+
+
+def last_data(adler: int) -> list[bytes]:
+    """Make the chunk after the last strip: an empty last deflate block and the checksum of all rows."""
+    return chunk(b"IDAT", b"\x03\x00", adler.to_bytes(4, "big"))
+
+
 def _strip(block: Pixels, pixel: int) -> _Strip:
     """Filter and deflate a block whose pixels have ``pixel`` bytes."""
     big_endian = np.ascontiguousarray(block, block.dtype.newbyteorder(">"))
@@ -186,7 +204,7 @@ def _strip(block: Pixels, pixel: int) -> _Strip:
         parts.append(compressor.compress(filtered))
         adler = isal_zlib.adler32(filtered, adler)
     parts.append(compressor.flush(isal_zlib.Z_SYNC_FLUSH))
-    return _Strip(len(raw), _chunk(b"IDAT", *parts), adler)
+    return _Strip(len(raw), chunk(b"IDAT", *parts), sum(map(len, parts)), adler)
 
 
 def _filtered(raw: NDArray[np.uint8], start: int, stop: int, pixel: int) -> NDArray[np.uint8]:
@@ -207,10 +225,3 @@ def _filtered(raw: NDArray[np.uint8], start: int, stop: int, pixel: int) -> NDAr
     half += left & above
     np.subtract(current[:, pixel:], half, out=rest)
     return out
-
-
-def _chunk(name: bytes, *parts: bytes) -> list[bytes]:
-    checksum = isal_zlib.crc32(name)
-    for part in parts:
-        checksum = isal_zlib.crc32(part, checksum)
-    return [sum(map(len, parts)).to_bytes(4, "big"), name, *parts, checksum.to_bytes(4, "big")]

@@ -1,6 +1,7 @@
-"""Reading a crop of a stored picture."""
+"""Reading a crop of a stored picture: only the strips that hold it are read and decoded."""
 
 from pathlib import Path
+from typing import BinaryIO
 
 import imagecodecs
 import numpy as np
@@ -8,19 +9,33 @@ from numpy.typing import NDArray
 
 from app.errors import InvalidInputError
 from app.images.crop import Rectangle
-from app.images.formats.raw import with_channels
-from app.images.png import Pixels
+from app.images.formats.raw import is_opaque, with_channels
+from app.images.png import (
+    COLOUR_TYPES,
+    FIRST_DATA,
+    HEADER,
+    SIGNATURE,
+    STRIP_ENTRY,
+    STRIP_TABLE,
+    Pixels,
+    adler32_combine,
+    chunk,
+    last_data,
+)
+
+FRAME = 12  # bytes of a chunk around its content: length, name, checksum
+BEFORE_TABLE = len(SIGNATURE) + FRAME + HEADER.size + FRAME + 1  # IHDR and sRGB
+CHANNELS = {colour: channels for channels, colour in COLOUR_TYPES.items()}
 
 
 def read_crop(path: Path, rectangle: Rectangle) -> NDArray[np.float32]:
-    """Cut a rectangle out of a stored PNG file.
+    """Cut a rectangle out of a stored picture.
 
     Parameters
     ----------
     path : Path
-        A file written by `app.images.intake`.
+        A PNG file; one by `app.images.png` is read in time proportional to the crop.
     rectangle : Rectangle
-        It must lie within the picture.
 
     Returns
     -------
@@ -33,7 +48,7 @@ def read_crop(path: Path, rectangle: Rectangle) -> NDArray[np.float32]:
         If the rectangle reaches outside the picture or holds pixels that are not opaque.
     """
     colour, alpha = _cut(path, rectangle)
-    if alpha is not None and _see_through(alpha):
+    if alpha is not None and not is_opaque(alpha):
         raise InvalidInputError(
             f"The crop {rectangle} holds transparent pixels, which have no colour to learn from: "
             "move it to where the picture is opaque, or fill the background in an image editor.",
@@ -43,17 +58,47 @@ def read_crop(path: Path, rectangle: Rectangle) -> NDArray[np.float32]:
 
 
 def has_transparency(path: Path, rectangle: Rectangle) -> bool:
-    """Whether a rectangle of a stored PNG file holds a pixel that is not opaque."""
+    """Whether a rectangle of a stored picture holds a pixel that is not opaque."""
     alpha = _cut(path, rectangle)[1]
-    return alpha is not None and _see_through(alpha)
+    return alpha is not None and not is_opaque(alpha)
 
 
 def _cut(path: Path, rectangle: Rectangle) -> tuple[Pixels, Pixels | None]:
-    array = imagecodecs.png_decode(path.read_bytes())
-    height, width = array.shape[:2]
-    area = rectangle.within(width, height)
-    return with_channels(array[area.y : area.y + area.height, area.x : area.x + area.width])
+    with path.open("rb") as file:
+        start = file.read(BEFORE_TABLE)
+        width, height, depth, colour, *_ = HEADER.unpack_from(start, len(SIGNATURE) + 8)
+        area = rectangle.within(width, height)
+        length, name = int.from_bytes(file.read(4), "big"), file.read(4)
+        if name == STRIP_TABLE:
+            table = list(STRIP_ENTRY.iter_unpack(file.read(length)))
+            file.read(4 + sum(map(len, FIRST_DATA)))
+            png, first = _strips(file, table, area, (width, depth, colour))
+        else:
+            png, first = path.read_bytes(), 0
+    array = imagecodecs.png_decode(png)
+    top = area.y - first
+    return with_channels(array[top : top + area.height, area.x : area.x + area.width])
 
 
-def _see_through(alpha: Pixels) -> bool:
-    return bool(alpha.min() < np.iinfo(alpha.dtype).max)
+def _strips(
+    file: BinaryIO, table: list[tuple[int, int, int]], area: Rectangle, kind: tuple[int, int, int]
+) -> tuple[bytes, int]:
+    """Build a PNG file of the strips that hold an area, the file standing at the first; also return its first row."""
+    width, depth, colour = kind
+    row_bytes = 1 + width * CHANNELS[colour] * depth // 8
+    first = below = skipped = taken = 0
+    adler = 1
+    for rows, size, checksum in table:
+        if below + rows <= area.y:
+            skipped += FRAME + size
+            first = below + rows
+        elif below < area.y + area.height:
+            taken += FRAME + size
+            adler = adler32_combine(adler, checksum, rows * row_bytes)
+        else:
+            break
+        below += rows
+    file.seek(skipped, 1)
+    header = HEADER.pack(width, below - first, depth, colour, 0, 0, 0)
+    pieces = [SIGNATURE, *chunk(b"IHDR", header), *FIRST_DATA, file.read(taken), *last_data(adler), *chunk(b"IEND")]
+    return b"".join(pieces), first

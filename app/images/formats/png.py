@@ -3,7 +3,6 @@
 Of an animated PNG this is the still picture that every viewer shows. The gAMA and cHRM chunks are not used.
 """
 
-import struct
 from collections.abc import Iterator
 from functools import partial
 
@@ -13,9 +12,9 @@ from PIL import Image
 
 from app.errors import BrokenFileError
 from app.images.formats.raw import DAMAGED, Raw, check_size, orientation, with_channels
+from app.images.png import HEADER, SIGNATURE, chunk
 
 NAME = "PNG"
-SIGNATURE = b"\x89PNG\r\n\x1a\n"
 SAMPLES_PER_PIXEL = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}
 DEPTHS = {0: (1, 2, 4, 8, 16), 2: (8, 16), 3: (1, 2, 4, 8), 4: (8, 16), 6: (8, 16)}
 # First column, first row, column step and row step of the seven passes of an interlaced picture.
@@ -38,17 +37,17 @@ def decode(data: bytes, max_pixels: int) -> Raw:
     name, header = next(chunks, (b"", b""))
     if name != b"IHDR" or len(header) != 13:
         raise BrokenFileError(DAMAGED.format(NAME))
-    width, height, depth, colour, _, _, interlaced = struct.unpack(">IIBBBBB", header)
+    width, height, depth, colour, _, _, interlaced = HEADER.unpack(header)
     if depth not in DEPTHS.get(colour, ()) or interlaced > 1:
         raise BrokenFileError(DAMAGED.format(NAME))
     check_size(width, height, max_pixels, NAME)
     # Only what the pixels need is handed on; the rest is metadata, and not worth a parser's risk.
-    kept = [SIGNATURE, _chunk(b"IHDR", header)]
+    kept = [SIGNATURE, *chunk(b"IHDR", header)]
     compressed: list[bytes] = []
     profile, upright, ended = None, 1, False
     for name, content in chunks:
         if name in (b"PLTE", b"tRNS", b"IDAT"):
-            kept.append(_chunk(name, content))
+            kept += chunk(name, content)
         if name == b"IDAT":
             compressed.append(content)
         elif name == b"iCCP":
@@ -62,7 +61,7 @@ def decode(data: bytes, max_pixels: int) -> Raw:
     if not ended or not _inflates_to(compressed, size):
         raise BrokenFileError(DAMAGED.format(NAME))
     try:
-        array = imagecodecs.png_decode(b"".join([*kept, _chunk(b"IEND", b"")]))
+        array = imagecodecs.png_decode(b"".join([*kept, *chunk(b"IEND")]))
     except imagecodecs.PngError:
         raise BrokenFileError(DAMAGED.format(NAME)) from None
     pixels, alpha = with_channels(array)
@@ -80,11 +79,6 @@ def _chunks(data: bytes) -> Iterator[tuple[bytes, bytes]]:
             raise BrokenFileError(DAMAGED.format(NAME))
         yield name, content
         at += 12 + length
-
-
-def _chunk(name: bytes, content: bytes) -> bytes:
-    checksum = isal_zlib.crc32(content, isal_zlib.crc32(name))
-    return b"".join((len(content).to_bytes(4, "big"), name, content, checksum.to_bytes(4, "big")))
 
 
 def _inflated_size(width: int, height: int, bits: int, interlaced: int) -> int:

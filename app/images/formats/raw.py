@@ -3,11 +3,13 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import numpy as np
 from PIL import Image
 
 from app.errors import BrokenFileError, TooLargeError
 from app.images.png import Pixels
 
+OPAQUE = 0.99
 EXIF_ORIENTATION = 0x0112
 DAMAGED = "This {} file is damaged or incomplete: open it in an image editor, save it again and upload the new file."
 
@@ -53,6 +55,11 @@ def with_channels(array: Pixels) -> tuple[Pixels, Pixels | None]:
     if array.shape[2] in (2, 4):
         return array[..., :-1], array[..., -1]
     return array, None
+
+
+def is_opaque(alpha: Pixels) -> bool:
+    """Whether nothing can be seen through. From 99 % on counts as opaque: photographs with 254 of 255 everywhere are met."""
+    return bool(alpha.min() >= OPAQUE * np.iinfo(alpha.dtype).max)
 
 
 def orientation(read: Callable[[], Image.Exif]) -> int:
