@@ -4,7 +4,7 @@ import logging
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from app.errors import AppError, CancelledError, TimeLimitError
 from app.executor.words import BROKEN, out_of_time

@@ -1,0 +1,84 @@
+"""Jobs for the executors' tests, in a module that worker processes can import.
+
+A job's name is ``behaviour!directory``: what it shall do, and where it leaves marks that a test can wait for.
+"""
+
+import os
+import signal
+import time
+from pathlib import Path
+
+from app.errors import InvalidInputError
+from app.methods.model import Progress
+from app.settings import Settings
+
+PATIENCE = 60.0
+
+
+def mark(directory: Path, name: str) -> None:
+    """Append the process's id to a file of this name."""
+    with (directory / name).open("a") as file:
+        file.write(f"{os.getpid()}\n")
+
+
+def marks(directory: Path, name: str) -> list[int]:
+    """The ids that `mark` left, oldest first."""
+    path = directory / name
+    return [int(line) for line in path.read_text().splitlines()] if path.exists() else []
+
+
+def run(settings: Settings, job: str, progress: Progress) -> None:
+    """Behave as the job's name says; marks ``<name>.started`` first and ``<name>.done`` last."""
+    name, _, where = job.partition("!")
+    directory = Path(where)
+    behaviour = name.split("-")[0]
+    mark(directory, f"{name}.started")
+    BEHAVIOURS[behaviour](directory, name, progress)
+    mark(directory, f"{name}.done")
+
+
+def quick(directory: Path, name: str, progress: Progress) -> None:
+    progress("only stage", 0.5)
+
+
+def polite(directory: Path, name: str, progress: Progress) -> None:
+    """Run until the file ``<name>.go`` is there, calling progress all the time."""
+    deadline = time.monotonic() + PATIENCE
+    while not (directory / f"{name}.go").exists() and time.monotonic() < deadline:
+        progress("waiting", 0.25)
+        time.sleep(0.005)
+
+
+def stubborn(directory: Path, name: str, progress: Progress) -> None:
+    """Compute without ever calling progress, as code does that hangs."""
+    deadline = time.monotonic() + PATIENCE
+    while time.monotonic() < deadline:
+        sum(range(1000))
+
+
+def refused(directory: Path, name: str, progress: Progress) -> None:
+    raise InvalidInputError("The crop is too small: make it larger.", "crop")
+
+
+def broken(directory: Path, name: str, progress: Progress) -> None:
+    raise ZeroDivisionError("not for people")
+
+
+def killed(directory: Path, name: str, progress: Progress) -> None:
+    """Kill its own process, as often as the name's number says."""
+    if len(marks(directory, f"{name}.started")) <= int(name.split("-")[1]):
+        os.kill(os.getpid(), signal.SIGKILL)
+
+
+def greedy(directory: Path, name: str, progress: Progress) -> None:
+    """Take memory until killed."""
+    taken = []
+    deadline = time.monotonic() + PATIENCE
+    while time.monotonic() < deadline:
+        taken.append(b"x" * (1 << 24))
+        time.sleep(0.01)
+
+
+BEHAVIOURS = {
+    function.__name__: function for function in (quick, polite, stubborn, refused, broken, killed, greedy)
+}
