@@ -24,7 +24,9 @@ class Settings(BaseSettings):
     samples_dir: Path = Field(ROOT / "samples", description="Directory of the bundled photographs and their catalogue.")
 
     # Engine
-    scheduler: str | None = Field(None, description="Address of a Dask scheduler (tcp://…); default: processes of ours.")
+    scheduler: str | None = Field(
+        None, description="Address of a Dask scheduler (tcp://…); default: processes of ours."
+    )
     workers: int = Field(max(2, os.cpu_count() or 2), ge=1, description="Worker processes of the embedded engine.")
     threads: int = Field(max(1, os.cpu_count() or 1), ge=1, description="Threads that one experiment computes with.")
     worker_memory: int = Field(2048 * MEBIBYTE, ge=256 * MEBIBYTE, description="Bytes a worker process may use.")
@@ -36,13 +38,19 @@ class Settings(BaseSettings):
     max_upload_pixels: int = Field(50_000_000, ge=1, description="Pixels (width × height) of an uploaded picture.")
     max_output_pixels: int = Field(1 << 26, ge=1, description="Pixels (width × height) of a synthesised texture.")
     decode_seconds: float = Field(20.0, gt=0, description="Seconds the decoding of one upload may take.")
-    decode_memory: int = Field(2048 * MEBIBYTE, ge=64 * MEBIBYTE, description="Bytes the decoding of one upload may use.")
+    decode_memory: int = Field(
+        2048 * MEBIBYTE, ge=64 * MEBIBYTE, description="Bytes the decoding of one upload may use."
+    )
 
     # Web
-    base_url: str | None = Field(None, description="Public address, e.g. https://texture.example.org; default: the request's.")
+    base_url: str | None = Field(
+        None, description="Public address, e.g. https://texture.example.org; default: the request's."
+    )
     operator_token: SecretStr | None = Field(None, description="Bearer token that may delete any experiment.")
     sample_keep_hours: float = Field(24.0, ge=0, description="Hours an uploaded sample without an experiment is kept.")
-    log_level: Literal["debug", "info", "warning", "error"] = "info"
+    log_level: Literal["debug", "info", "warning", "error"] = Field(
+        "info", description="The least that is logged: debug, info, warning or error."
+    )
 
     @property
     def sql_url(self) -> str:

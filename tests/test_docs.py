@@ -1,0 +1,55 @@
+"""What the documents say is what the code does."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from app.settings import ROOT, Settings
+
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+DOCUMENTS = [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")]
+OF_THE_MACHINE = {"workers", "threads", "samples_dir"}  # defaults that differ from machine to machine
+ROW = re.compile(r"^\| `MICROTEXTURE_(\w+)` \| (.+?) \| (.+) \|$", re.MULTILINE)
+
+
+def shown(value: object) -> str:
+    """Write a setting's default as the table does."""
+    if value is None:
+        return "none"
+    return f"`{value:g}`" if isinstance(value, float) else f"`{value}`"
+
+
+@pytest.fixture(scope="module")
+def table() -> dict[str, tuple[str, str]]:
+    return {name.lower(): (default, meaning) for name, default, meaning in ROW.findall(README)}
+
+
+@pytest.mark.parametrize("name", Settings.model_fields)
+def test_every_setting_stands_in_the_readme_with_its_meaning_and_default(
+    table: dict[str, tuple[str, str]], name: str
+) -> None:
+    field = Settings.model_fields[name]
+    default, meaning = table[name]
+    assert meaning == field.description
+    if name not in OF_THE_MACHINE:
+        assert default == shown(field.default)
+
+
+def test_the_readme_names_no_setting_that_is_not_there(table: dict[str, tuple[str, str]]) -> None:
+    served = {"forwarded_allow_ips", "limit_concurrency"}
+    assert table.keys() - served <= Settings.model_fields.keys()
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+def test_links_between_documents_lead_somewhere(document: Path) -> None:
+    text = document.read_text(encoding="utf-8")
+    for target in re.findall(r"\]\((?!https?:|#)([^)#\s]+)", text):
+        assert (document.parent / target).exists(), target
+
+
+def test_every_make_target_that_the_documents_name_exists() -> None:
+    targets = set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE))
+    for document in DOCUMENTS:
+        named = set(re.findall(r"(?:^ {4}|`)make ([a-z-]+)", document.read_text(encoding="utf-8"), re.MULTILINE))
+        assert named <= targets, document.name
