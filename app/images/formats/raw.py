@@ -58,7 +58,7 @@ def with_channels(array: Pixels) -> tuple[Pixels, Pixels | None]:
 
 
 def is_opaque(alpha: Pixels) -> bool:
-    """Whether nothing can be seen through. From 99 % on counts as opaque: photographs with 254 of 255 everywhere are met."""
+    """Whether nothing can be seen through; 99 % counts as opaque: photographs with 254 of 255 everywhere are met."""
     return bool(alpha.min() >= OPAQUE * np.iinfo(alpha.dtype).max)
 
 
