@@ -86,6 +86,8 @@ def experiment_page(
             "others": [other for other in METHODS.values() if other.name != declared.name and _fits(other, declared)],
             "downloads": list(_downloads(experiment)),
             "timings": list(_timings(experiment)),
+            "total": f"{sum(experiment.timings.values()):.2f} s",
+            "seamless": not experiment.parameters.get("add_smooth"),
             "snippets": snippets(experiment, base),
         }
     return render(request, "experiment.html", context)
@@ -136,10 +138,15 @@ def _downloads(experiment: Experiment) -> Iterator[tuple[str, str]]:
 
 
 def _timings(experiment: Experiment) -> Iterator[tuple[str, str, str]]:
-    longest = max(experiment.timings.values(), default=0.0)
+    """Give each stage, its time in words, and its bar's length in percent of the longest stage's."""
+    stages: dict[str, float] = {}
     for stage, seconds in experiment.timings.items():
+        words = stage.replace("-", " ").capitalize()
+        stages[words] = stages.get(words, 0.0) + seconds
+    longest = max(stages.values(), default=0.0)
+    for words, seconds in stages.items():
         shown = f"{seconds * 1000:.0f} ms" if seconds < 1 else f"{seconds:.1f} s"
-        yield stage, shown, f"{100 * seconds / longest if longest else 0:.1f}"
+        yield words, shown, f"{100 * seconds / longest if longest else 0:.1f}"
 
 
 def _fits(other: Method, declared: Method) -> bool:

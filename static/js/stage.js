@@ -56,6 +56,8 @@ function repeat({ image, tile, width, height }, room, left, top, wide, high, sca
 
 /** The scale at which n × n of every picture is seen whole; whole numbers above 1, so that pixels stay square and equal. */
 export function fitting(pictures, room, tiles) {
-  const scale = Math.min(...pictures.map(({ width, height }) => Math.min(room.width / width, room.height / height) / tiles));
+  const margin = Math.min(32, room.width / 16);
+  const [wide, high] = [room.width - margin, room.height - margin];
+  const scale = Math.min(...pictures.map(({ width, height }) => Math.min(wide / width, high / height) / tiles));
   return scale >= 1 ? Math.min(Math.floor(scale), 4) : scale;
 }

@@ -46,10 +46,8 @@ export class Viewer {
     this.panes.setAttribute("role", "group");
     this.panes.setAttribute("aria-label", `Pictures. ${KEYS}`);
     const template = this.root.querySelector(".steps-template");
-    if (template) {
-      template.replaceWith(template.content);
-      this.steps = this.root.querySelector(".steps");
-    }
+    template?.replaceWith(template.content);
+    this.steps = this.root.querySelector(".steps");
     this.root.querySelector(".tools").hidden = false;
     for (const link of this.root.querySelectorAll(".views a")) link.hidden = false;
   }
@@ -93,6 +91,7 @@ export class Viewer {
     this.figures.forEach((figure) => (figure.hidden = over));
     this.over.hidden = !over;
     this.panes.hidden = mode === "steps";
+    this.panes.classList.remove("tiled");
     if (this.steps) this.steps.hidden = mode !== "steps";
     this.pictures.forEach((shown, index) => {
       if (over) this.overStage.append(shown.image);
