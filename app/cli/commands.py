@@ -1,0 +1,165 @@
+"""The commands and their options. What takes long to import is imported by the command that needs it."""
+
+from datetime import timedelta
+from typing import Annotated
+
+import typer
+
+from app import __version__
+from app.cli.problems import EXIT_CODES, plain_errors
+from app.errors import InvalidInputError
+
+
+def _version(asked: bool) -> None:
+    if asked:
+        typer.echo(f"microtexture {__version__}")
+        raise typer.Exit
+
+
+def serve(
+    host: Annotated[
+        str, typer.Option(help="Address to listen on; 0.0.0.0 for all.", envvar="MICROTEXTURE_HOST")
+    ] = "127.0.0.1",
+    port: Annotated[
+        int, typer.Option(help="Port to listen on.", min=0, max=65535, envvar=["MICROTEXTURE_PORT", "PORT"])
+    ] = 8000,
+    forwarded_allow_ips: Annotated[
+        str,
+        typer.Option(
+            help="Addresses of reverse proxies whose X-Forwarded-* headers are believed, with commas; none by default.",
+            envvar="MICROTEXTURE_FORWARDED_ALLOW_IPS",
+        ),
+    ] = "",
+    limit_concurrency: Annotated[
+        int,
+        typer.Option(
+            help="Connections served at a time; one more is answered 503.",
+            min=1,
+            envvar="MICROTEXTURE_LIMIT_CONCURRENCY",
+        ),
+    ] = 500,
+) -> None:
+    """Serve the web pages and the REST API."""
+    import uvicorn
+
+    from app.cli.settings import read_settings
+
+    with plain_errors():
+        settings = read_settings()
+        settings.data_dir.mkdir(parents=True, exist_ok=True)
+
+    uvicorn.run(
+        "app.main:create_app",
+        factory=True,
+        host=host,
+        port=port,
+        log_level=settings.log_level,
+        proxy_headers=bool(forwarded_allow_ips),
+        forwarded_allow_ips=forwarded_allow_ips or None,
+        limit_concurrency=limit_concurrency,
+        timeout_keep_alive=10,
+        timeout_graceful_shutdown=10,
+        server_header=False,
+    )
+
+
+def methods(
+    as_json: Annotated[
+        bool, typer.Option("--json", help="The whole declaration, as GET /api/v1/methods gives it.")
+    ] = False,
+) -> None:
+    """List the methods."""
+    from app.methods.registry import METHODS
+
+    if as_json:
+        from app.web.api.records import MethodList, MethodRecord
+
+        document = MethodList(methods=[MethodRecord.of(method) for method in METHODS.values()])
+        typer.echo(document.model_dump_json(indent=2))
+        return
+
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table("method", "title", "what it computes", box=None, pad_edge=False, header_style="bold")
+    for method in METHODS.values():
+        table.add_row(method.name, method.title, method.summary)
+    Console().print(table)
+
+
+def prune(
+    older_than: Annotated[
+        str | None,
+        typer.Option(help="Also remove experiments that finished longer ago than this: 30d, 12h, 90m.", metavar="AGE"),
+    ] = None,
+) -> None:
+    """Remove what nothing refers to any more, and old experiments where asked. The service may run meanwhile."""
+    with plain_errors():
+        age = None if older_than is None else duration(older_than)
+
+        from app.cli.settings import read_settings
+        from app.main import build_service
+
+        service = build_service(read_settings())
+        try:
+            pruned = service.prune(age)
+        finally:
+            service.close()
+    typer.echo(f"Removed {pruned.experiments} experiments, {pruned.samples} samples and {pruned.files} files.")
+
+
+def duration(text: str) -> timedelta:
+    """Read an age.
+
+    Raises
+    ------
+    InvalidInputError
+        If it is not a number followed by d, h or m.
+
+    Examples
+    --------
+    >>> duration("30d"), duration("90m")
+    (datetime.timedelta(days=30), datetime.timedelta(seconds=5400))
+    """
+    units = {"d": "days", "h": "hours", "m": "minutes"}
+    number, unit = text[:-1], text[-1:]
+    if unit not in units or not (number.isascii() and number.isdigit()) or len(number) > 5:
+        raise InvalidInputError(f"An age is a number and d, h or m, for example 30d; got {text!r}.", "older_than")
+    return timedelta(**{units[unit]: int(number)})
+
+
+def application(*, with_method_options: bool) -> typer.Typer:
+    """Put the command line together.
+
+    Parameters
+    ----------
+    with_method_options : bool
+        Whether `synthesize` knows the options of every method, for which all of them are imported (about a second).
+    """
+    app = typer.Typer(no_args_is_help=True, rich_markup_mode=None, pretty_exceptions_enable=False, epilog=EXIT_CODES)
+    app.callback()(about)
+    app.command(epilog=EXIT_CODES)(serve)
+    if with_method_options:
+        from app.cli.synthesize import command
+
+        synthesize = command()
+    else:
+        synthesize = _nothing
+    app.command("synthesize", help="Make a texture from a photograph, without a service.", epilog=EXIT_CODES)(
+        synthesize
+    )
+    app.command(epilog=EXIT_CODES)(methods)
+    app.command(epilog=EXIT_CODES)(prune)
+    return app
+
+
+def _nothing() -> None:
+    """Hold the place of `synthesize` in the list of commands."""
+
+
+def about(
+    version: Annotated[
+        bool, typer.Option("--version", help="Say the version.", callback=_version, is_eager=True)
+    ] = False,
+) -> None:
+    """From a photograph to as much of its texture as you ask for."""

@@ -1,0 +1,87 @@
+"""`microtexture synthesize`: the service's run without a service. A method's options come from its declaration."""
+
+import inspect
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from app.cli.problems import plain_errors
+from app.cli.progress import Bar
+from app.cli.run import Request, run
+from app.cli.settings import read_settings
+from app.methods.fields import FormField, fields
+from app.methods.registry import METHODS
+
+_OWN = {
+    "files": (
+        list[Path],
+        typer.Argument(
+            help="The photograph, or as many as the method takes, and then the file to write.", metavar="PHOTO... OUT"
+        ),
+        inspect.Parameter.empty,
+    ),
+    "method": (str, typer.Option(help=f"One of {', '.join(METHODS)}.", metavar="NAME"), "rpn"),
+    "crop": (
+        list[str],
+        typer.Option(
+            help="Part of the photograph to work from; all of it by default. Once per photograph.", metavar="X,Y,W,H"
+        ),
+        [],
+    ),
+    "size": (
+        str | None,
+        typer.Option(help="Size of the texture in pixels, or as a multiple of the crop: x2.", metavar="WxH|xN"),
+        None,
+    ),
+    "depth": (int, typer.Option(help="Bits per channel, 8 or 16 (PNG and TIFF).", metavar="BITS"), 8),
+    "overwrite": (bool, typer.Option("--overwrite", help="Replace OUT if it is there."), False),
+}
+
+
+def command() -> Callable[..., None]:
+    """Make the command: a function whose signature holds an option for every parameter of every method."""
+
+    def synthesize(files: list[Path], **options: Any) -> None:
+        with plain_errors():
+            own = {name: options.pop(name) for name in _OWN if name != "files"}
+            given = {name: value for name, value in options.items() if value is not None}
+            request = Request(photos=tuple(files[:-1]), out=files[-1], parameters=given, **own)
+            with Bar() as progress:
+                done = run(request, read_settings(), progress)
+        typer.echo(done)
+
+    synthesize.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
+        [_parameter(name, *declared) for name, declared in _OWN.items()]
+        + [_option(*found) for found in _found().values()]
+    )
+    return synthesize
+
+
+def _found() -> dict[str, tuple[FormField, list[str]]]:
+    """Every parameter of the registry by name, and the methods that have it."""
+    found: dict[str, tuple[FormField, list[str]]] = {}
+    for method in METHODS.values():
+        for field in fields(method.params):
+            found.setdefault(field.name, (field, []))[1].append(method.name)
+    return found
+
+
+def _option(field: FormField, owners: list[str]) -> inspect.Parameter:
+    name = field.name.replace("_", "-")
+    help_text = field.help if len(owners) == len(METHODS) else f"{field.help} ({', '.join(owners)})"
+    if field.kind == "switch":
+        declared = typer.Option(f"--{name}/--no-{name}", help=help_text, show_default=field.default or "off")
+        return _parameter(field.name, bool | None, declared, None)
+    metavar = "|".join(field.choices) or {"integer": "N", "number": "X"}.get(field.kind, "TEXT")
+    if field.default:
+        help_text = f"{help_text} [default: {field.default}]"
+    # Text here: the Params class validates it, with the same words as the API's.
+    return _parameter(field.name, str | None, typer.Option(f"--{name}", help=help_text, metavar=metavar), None)
+
+
+def _parameter(name: str, annotation: Any, declared: Any, default: Any) -> inspect.Parameter:
+    return inspect.Parameter(
+        name, inspect.Parameter.KEYWORD_ONLY, annotation=Annotated[annotation, declared], default=default
+    )

@@ -1,0 +1,229 @@
+"""The command line: its options come from the methods, its errors are single lines, its files are whole or absent."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import tifffile
+from PIL import Image
+from typer.testing import CliRunner, Result
+
+from app.cli.commands import application
+from app.methods.registry import METHODS
+from app.settings import ROOT
+
+SAND = ROOT / "samples" / "sand_desert009.png"
+CHINA = ROOT / "samples" / "scene_china.jpg"
+
+
+def microtexture(*arguments: str | Path) -> Result:
+    return CliRunner().invoke(application(with_method_options=True), [str(argument) for argument in arguments])
+
+
+def synthesize(*arguments: str | Path) -> Result:
+    return microtexture("synthesize", *arguments)
+
+
+def pixels(path: Path) -> np.ndarray:
+    with Image.open(path) as image:
+        return np.asarray(image)
+
+
+def test_help_answers_without_loading_numerics_or_web() -> None:
+    script = (
+        "import sys; sys.argv = ['microtexture', '--help']\n"
+        "from app.cli import main\n"
+        "try: main()\n"
+        "except SystemExit as end: assert not end.code\n"
+        "slow = {'numpy', 'scipy', 'fastapi', 'pydantic', 'sqlalchemy', 'uvicorn'}\n"
+        "print('loaded:', *sorted(slow & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert "synthesize" in done.stdout
+    assert done.stdout.splitlines()[-1] == "loaded:"
+
+
+def test_every_parameter_of_every_method_is_an_option_with_its_help() -> None:
+    text = " ".join(synthesize("--help").output.split())
+    for method in METHODS.values():
+        for name, field in method.params.model_fields.items():
+            assert f"--{name.replace('_', '-')}" in text
+            assert " ".join((field.description or "").split()[:4]) in text
+
+
+def test_the_example_of_the_issue_makes_a_texture_of_the_asked_size(tmp_path: Path) -> None:
+    out = tmp_path / "out.png"
+    done = synthesize(SAND, out, "--method", "rpn", "--crop", "10,20,256,256", "--size", "1024x768", "--seed", "7")
+    assert done.exit_code == 0, done.output
+    assert pixels(out).shape == (768, 1024, 3)
+    assert "1024 × 768" in done.output
+    assert "seed 7" in done.output
+
+
+def test_the_same_seed_gives_the_same_bytes_and_another_seed_others(tmp_path: Path) -> None:
+    files = [tmp_path / name for name in ("a.png", "b.png", "c.png")]
+    for file, seed in zip(files, "778", strict=True):
+        assert synthesize(SAND, file, "--crop", "0,0,64,64", "--seed", seed).exit_code == 0
+    first, second, third = (file.read_bytes() for file in files)
+    assert first == second != third
+
+
+def test_a_size_may_be_a_multiple_of_the_crop(tmp_path: Path) -> None:
+    out = tmp_path / "out.png"
+    assert synthesize(CHINA, out, "--crop", "0,0,40,30", "--size", "x1.5").exit_code == 0
+    assert pixels(out).shape == (45, 60, 3)
+
+
+@pytest.mark.parametrize(
+    ("name", "kind"), [("o.png", "PNG"), ("o.jpg", "JPEG"), ("o.JPEG", "JPEG"), ("o.webp", "WEBP"), ("o.tif", "TIFF")]
+)
+def test_the_extension_chooses_the_format(tmp_path: Path, name: str, kind: str) -> None:
+    assert synthesize(CHINA, tmp_path / name, "--crop", "0,0,40,30").exit_code == 0
+    with Image.open(tmp_path / name) as image:
+        assert (image.format, image.size) == (kind, (40, 30))
+
+
+def test_sixteen_bits_are_written_where_asked(tmp_path: Path) -> None:
+    out = tmp_path / "out.tif"
+    assert synthesize(CHINA, out, "--crop", "0,0,40,30", "--depth", "16").exit_code == 0
+    deep = tifffile.imread(out)
+    assert deep.dtype == np.uint16
+    assert len(np.unique(deep)) > 256
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--method", "fractal"], "rpn, adsn"),
+        (["--crop", "1,2,3"], "x,y,width,height"),
+        (["--crop", "600,0,100,100"], "reaches outside"),
+        (["--size", "big"], "1024x1024"),
+        (["--size", "64x64", "--width", "64"], "either"),
+        (["--seed", "-1"], "Seed"),
+        (["--alpha", "0.7"], "0.5"),
+        (["--window", "square"], "'bump'"),
+        (["--size", "x2", "--add-smooth"], "own size"),
+        (["--size", "99999x99999"], "megapixels"),
+        (["--depth", "12"], "8 or 16"),
+    ],
+)
+def test_a_wrong_request_is_one_line_on_stderr_and_exit_code_2(tmp_path: Path, arguments: list[str], said: str) -> None:
+    out = tmp_path / "out.png"
+    done = synthesize(CHINA, out, *arguments)
+    assert done.exit_code == 2
+    assert done.stderr.startswith("microtexture: ")
+    assert done.stderr.count("\n") == 1
+    assert said in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", ["out.gif", "out", "no/such/out.png"])
+def test_a_file_that_cannot_be_written_is_refused_before_any_work(tmp_path: Path, name: str) -> None:
+    done = synthesize(CHINA, tmp_path / name)
+    assert done.exit_code == 2
+    assert done.stderr.count("\n") == 1
+
+
+def test_sixteen_bits_do_not_fit_into_a_jpeg(tmp_path: Path) -> None:
+    assert "PNG and TIFF" in synthesize(CHINA, tmp_path / "out.jpg", "--depth", "16").stderr
+
+
+def test_a_file_that_is_there_is_replaced_only_on_request(tmp_path: Path) -> None:
+    out = tmp_path / "out.png"
+    out.write_bytes(b"precious")
+    refused = synthesize(CHINA, out, "--crop", "0,0,40,30")
+    assert (refused.exit_code, out.read_bytes()) == (2, b"precious")
+    assert "--overwrite" in refused.stderr
+    assert synthesize(CHINA, out, "--crop", "0,0,40,30", "--overwrite").exit_code == 0
+    assert pixels(out).shape == (30, 40, 3)
+
+
+@pytest.mark.parametrize("content", [b"", b"not a picture", SAND.read_bytes()[:5000]])
+def test_a_file_that_is_no_whole_photograph_is_refused(tmp_path: Path, content: bytes) -> None:
+    photo = tmp_path / "photo.png"
+    photo.write_bytes(content)
+    done = synthesize(photo, tmp_path / "out.png")
+    assert done.exit_code == 2
+    assert done.stderr.count("\n") == 1
+    assert not (tmp_path / "out.png").exists()
+
+
+def test_a_missing_photograph_is_named(tmp_path: Path) -> None:
+    assert "nowhere.jpg" in synthesize(tmp_path / "nowhere.jpg", tmp_path / "out.png").stderr
+
+
+def test_transparent_pixels_in_the_crop_are_refused_and_beside_it_are_not(tmp_path: Path) -> None:
+    photo = tmp_path / "photo.png"
+    image = Image.open(CHINA).convert("RGBA").crop((0, 0, 200, 100))
+    image.putalpha(Image.linear_gradient("L").point(lambda value: 255 if value > 100 else 0).resize((200, 100)))
+    image.save(photo)
+    assert "transparent" in synthesize(photo, tmp_path / "out.png").stderr
+    assert synthesize(photo, tmp_path / "out.png", "--crop", "0,60,100,40").exit_code == 0
+
+
+@pytest.fixture
+def environment(tmp_path: Path) -> dict[str, str]:
+    return {**os.environ, "MICROTEXTURE_DATA_DIR": str(tmp_path / "data")}
+
+
+def test_an_interrupt_ends_it_with_130_and_leaves_no_file(tmp_path: Path, environment: dict[str, str]) -> None:
+    """Interrupted while the method runs: its progress callback is where the signal is sent."""
+    script = (
+        "import os, signal, sys\n"
+        "import app.cli.progress as progress\n"
+        "progress.Bar.__call__ = lambda *_: os.kill(os.getpid(), signal.SIGINT)\n"
+        "from app.cli import main\n"
+        "main()"
+    )
+    arguments = [
+        sys.executable,
+        "-c",
+        script,
+        "synthesize",
+        str(SAND),
+        str(tmp_path / "out.png"),
+        "--size",
+        "1024x1024",
+    ]
+    done = subprocess.run(arguments, capture_output=True, text=True, env=environment, check=False)
+    assert done.returncode in (130, -signal.SIGINT)
+    assert "Traceback" not in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_methods_lists_every_method() -> None:
+    done = microtexture("methods")
+    assert all(name in done.stdout for name in METHODS)
+    document = json.loads(microtexture("methods", "--json").stdout)
+    assert [method["name"] for method in document["methods"]] == list(METHODS)
+    assert "alpha" in document["methods"][0]["parameters"]["properties"]
+
+
+def test_prune_says_what_went(environment: dict[str, str]) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", "from app.cli import main; main()", "prune", "--older-than", "30d"],
+        capture_output=True,
+        text=True,
+        env=environment,
+        check=False,
+    )
+    assert (done.returncode, done.stdout) == (0, "Removed 0 experiments, 0 samples and 0 files.\n"), done.stderr
+
+
+@pytest.mark.parametrize("age", ["soon", "30", "-1d", "30y", ""])
+def test_prune_refuses_an_age_it_cannot_read(age: str) -> None:
+    done = microtexture("prune", f"--older-than={age}")
+    assert done.exit_code == 2
+    assert "30d" in done.stderr
+
+
+def test_a_wrong_setting_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("MICROTEXTURE_WORKERS", "0")
+    done = microtexture("serve")
+    assert done.exit_code == 2
+    assert "MICROTEXTURE_WORKERS" in done.stderr
