@@ -37,10 +37,8 @@ class Settings(BaseSettings):
     max_upload_bytes: int = Field(32 * MEBIBYTE, ge=1, description="Bytes of an uploaded file.")
     max_upload_pixels: int = Field(50_000_000, ge=1, description="Pixels (width × height) of an uploaded picture.")
     max_output_pixels: int = Field(1 << 26, ge=1, description="Pixels (width × height) of a synthesised texture.")
-    decode_seconds: float = Field(20.0, gt=0, description="Seconds the decoding of one upload may take.")
-    decode_memory: int = Field(
-        2048 * MEBIBYTE, ge=64 * MEBIBYTE, description="Bytes the decoding of one upload may use."
-    )
+    decode_seconds: float = Field(20.0, gt=0, description="Seconds that decoding one upload may take.")
+    decode_memory: int = Field(2048 * MEBIBYTE, ge=64 * MEBIBYTE, description="Bytes that decoding one upload may use.")
 
     # Web
     base_url: str | None = Field(
