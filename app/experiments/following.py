@@ -9,7 +9,7 @@ from datetime import UTC, datetime
 from threading import Lock
 
 from app.experiments.model import Experiment, Snapshot, Status
-from app.experiments.ports import ExperimentStore, Executor
+from app.experiments.ports import Executor, ExperimentStore
 
 POLL_SECONDS = 1.0  # how often a finish is looked for that another process may bring about
 UPDATE_SECONDS = 0.1  # changes are passed on at most so often

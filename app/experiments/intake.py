@@ -5,19 +5,18 @@ import threading
 from datetime import UTC, datetime
 from pathlib import Path
 
-from app.errors import AppError, BusyError
+from app.errors import AppError
 from app.experiments.model import Sample
 from app.experiments.ownership import new_identifier
 from app.experiments.ports import BlobStore, ExperimentStore
 from app.images.crop import Rectangle
-from app.images.intake import Limits, intake
+from app.images.decode import Limits
+from app.images.intake import intake, server
 from app.images.read import has_transparency
 from app.samples import bundled
 from app.settings import Settings
 
 log = logging.getLogger(__name__)
-
-AT_ONCE = 2  # decodings beside each other: each may take the memory that the settings allow
 
 
 class SampleIntake:
@@ -26,8 +25,10 @@ class SampleIntake:
     def __init__(self, store: ExperimentStore, blobs: BlobStore, settings: Settings) -> None:
         self._store = store
         self._blobs = blobs
-        self._settings = settings
-        self._decoding = threading.BoundedSemaphore(AT_ONCE)
+        self._directory = settings.samples_dir
+        self._limits = Limits(
+            settings.max_upload_bytes, settings.max_upload_pixels, settings.decode_seconds, settings.decode_memory
+        )
 
     def add(self, upload: Path, owner: str | None) -> Sample:
         """A new sample of this file; ``owner`` is the digest of a token.
@@ -39,17 +40,12 @@ class SampleIntake:
         BusyError
             If too many others are being decoded.
         """
-        if not self._decoding.acquire(timeout=self._settings.decode_seconds):
-            raise BusyError("Too many photographs are being read at this moment. Try again in a minute.")
-        try:
-            return self._add(upload, new_identifier(), owner, title=None)
-        finally:
-            self._decoding.release()
+        return self._add(upload, new_identifier(), owner, title=None)
 
     def add_bundled(self, closing: threading.Event) -> None:
         """Keep the bundled photographs that are not kept yet, until told to stop."""
         known = {sample.id for sample in self._store.bundled_samples()}
-        for entry in bundled(self._settings.samples_dir):
+        for entry in bundled(self._directory):
             if closing.is_set():
                 return
             if entry.id in known:
@@ -59,13 +55,20 @@ class SampleIntake:
             except AppError as error:
                 log.error("the bundled photograph %s cannot be used: %s", entry.path, error)
 
+    def open(self) -> None:
+        """Start the process that decodes, so that the first upload need not wait for it."""
+        server.start()
+
+    def close(self) -> None:
+        """End the process that decodes."""
+        server.stop()
+
     def transparent(self, sample: Sample, crop: Rectangle) -> bool:
         """Whether the crop holds pixels that are not opaque."""
         return has_transparency(self._blobs.path(sample.digest), crop)
 
     def _add(self, path: Path, sample_id: str, owner: str | None, *, title: str | None) -> Sample:
-        limits = Limits()
-        found = intake(path, self._blobs.temporary_directory, limits)
+        found = intake(path, self._blobs.temporary_directory, self._limits)
         with self._blobs.lease():
             sample = Sample(
                 id=sample_id,

@@ -28,9 +28,9 @@ class Status(StrEnum):
 class Sample:
     """An uploaded or bundled picture, stored once, upright, in sRGB, without metadata.
 
-    ``digest`` is the SHA-256 (hex) of its stored PNG file, the name under which the blob store keeps it. ``depth`` is 8
-    or 16 bits per channel; ``channels`` counts colour channels (1 or 3); ``transparent`` says that the stored PNG has an
-    alpha channel with pixels that are not opaque. ``title`` is set for bundled samples, whose ids are their file stems.
+    ``digest`` is the SHA-256 (hex) of its stored PNG file, the name under which the blob store keeps it. ``depth`` is
+    8 or 16 bits per channel; ``channels`` counts colour channels (1 or 3); ``transparent`` says that the stored PNG has
+    an alpha channel with pixels that are not opaque. ``title`` is set for bundled samples, whose ids are file stems.
     """
 
     id: str
@@ -76,8 +76,8 @@ class Output:
 class Experiment:
     """One run: method, inputs and parameters (complete: defaults and sizes filled in), and what came of it.
 
-    ``owner`` is the SHA-256 (hex) of the owner's token. ``timings`` are seconds by stage, in order. A ``transient`` one is
-    made for a single answer: only its main output is computed, and it goes with the answer.
+    ``owner`` is the SHA-256 (hex) of the owner's token. ``timings`` are seconds by stage, in order. A ``transient`` one
+    is made for a single answer: only its main output is computed, and it goes with the answer.
     """
 
     id: str
@@ -113,8 +113,8 @@ class Page:
 class Snapshot:
     """An experiment's state of this moment, as the progress bar shows it.
 
-    ``position`` is its place in the queue (1 is next) while it waits; ``fraction`` is 0–1; ``stage`` names what is being
-    done; ``elapsed`` are the seconds since it was started.
+    ``position`` is its place in the queue (1 is next) while it waits; ``fraction`` is 0–1; ``stage`` names what is
+    being done; ``elapsed`` are the seconds since it was started.
     """
 
     status: Status

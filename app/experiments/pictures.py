@@ -1,15 +1,13 @@
 """Files made from stored ones and cached: what a browser shows of a sample, and downloads in other formats."""
 
 from pathlib import Path
-from typing import Literal
 
 from app.errors import InvalidInputError
 from app.experiments.cache import FileCache
 from app.experiments.model import Output, Sample
 from app.experiments.ports import BlobStore
-from app.images.convert import convert, rendition
+from app.images.convert import Format, convert, rendition
 
-Format = Literal["png", "jpeg", "webp", "tiff"]
 DEEP_FORMATS = ("png", "tiff")
 SIZES = (256, 512, 1024, 2048)
 PNG = "image/png"

@@ -134,8 +134,9 @@ Run = Callable[[Settings, str, Progress], None]
 class Executor(Protocol):
     """The engine that runs jobs. A job is an experiment's id, or ``id@16`` for its texture at 16 bits.
 
-    It calls ``ended(job, failure)`` from a thread of its own once a job has left it: ``failure`` is None if the worker's function
-    returned or the job was cancelled, otherwise a sentence for people. What the worker's function computes it records itself.
+    It calls ``ended(job, failure)`` from a thread of its own once a job has left it: ``failure`` is None if the
+    worker's function returned or the job was cancelled, otherwise a sentence for people. What a worker computes it
+    records itself.
     """
 
     def start(self, ended: Ended) -> None:
@@ -152,11 +153,11 @@ class Executor(Protocol):
         ...
 
     def cancel(self, job: str) -> None:
-        """Drop a queued job, stop a running one: first politely, then by restarting its worker process. Returns at once."""
+        """Drop a queued job, stop a running one: first politely, then by killing its worker. Returns at once."""
         ...
 
     def snapshot(self, job: str) -> Snapshot | None:
-        """What is known of a job that waits or runs here; None for any other, and for one that is being cancelled."""
+        """What is known of a job that waits or runs here; None for others and for one that is being cancelled."""
         ...
 
     @property
@@ -165,5 +166,5 @@ class Executor(Protocol):
         ...
 
     def subscribe(self, listener: Callable[[str], None]) -> Callable[[], None]:
-        """Call ``listener(job)`` (from any thread) whenever a snapshot changed or a job ended; returns the unsubscribe call."""
+        """Call ``listener(job)``, from any thread, whenever a snapshot changed or a job left; returns how to end it."""
         ...

@@ -53,9 +53,7 @@ def run_job(store: ExperimentStore, blobs: BlobStore, job: str, progress: Progre
         return
     try:
         if experiment.attempts > MAX_ATTEMPTS:
-            raise AppError(
-                "Running this experiment ended its worker again and again: try a smaller width and height, or another crop."
-            )
+            raise AppError("Running this experiment ended its worker again and again: try a smaller width and height.")
         _compute(store, blobs, experiment, progress, threads)
     except CancelledError:
         return  # recorded before the worker was told

@@ -17,10 +17,11 @@ from app.experiments.housekeeping import Housekeeping, Pruned
 from app.experiments.intake import SampleIntake
 from app.experiments.model import Experiment, Output, Page, Sample, Snapshot, Status
 from app.experiments.ownership import new_token, same, token_digest
-from app.experiments.pictures import Format, Pictures
-from app.experiments.ports import BlobStore, ExperimentStore, Executor
+from app.experiments.pictures import Pictures
+from app.experiments.ports import BlobStore, Executor, ExperimentStore
 from app.experiments.run import DEEP, DEEP_TEXTURE
 from app.experiments.submission import NewExperiment, NewInput, prepare
+from app.images.convert import Format
 from app.images.crop import Rectangle
 from app.settings import Settings
 
@@ -72,6 +73,7 @@ class Service:
         self._executor.subscribe(self._following.notify)
         for experiment_id in self._store.unfinished():
             self._executor.submit(experiment_id)
+        self._intake.open()
         self._executor.start(self._ended)
         for work in (partial(self._intake.add_bundled, self._closing), self._keep_house):
             thread = threading.Thread(target=work, daemon=True)
@@ -84,6 +86,7 @@ class Service:
         self._executor.close()
         for thread in self._background:
             thread.join(timeout=self._settings.decode_seconds)
+        self._intake.close()
         self._store.close()
 
     @property

@@ -15,8 +15,8 @@ from app.errors import NotFoundError
 class FileBlobs:
     """Content-addressed files: ``directory/ab/abcdef…``.
 
-    A file that is put under a lease is never removed before the lease ends, even if nothing refers to it yet: putting
-    holds a shared lock of the directory, removing an exclusive one. What a worker puts it records before its lease ends.
+    A file that is put under a lease is not removed before the lease ends, even if nothing refers to it yet: a lease is
+    a shared lock of the directory, removing takes an exclusive one. What is put must be recorded before its lease ends.
 
     Parameters
     ----------
