@@ -1,0 +1,83 @@
+"""``/api/v1/experiments/{id}/events``, over a real socket."""
+
+import json
+
+import pytest
+
+
+def events(response):
+    """The events of a stream as dictionaries; comments are left out."""
+    event = {}
+    for line in response.iter_lines():
+        if not line and event:
+            yield event
+            event = {}
+        elif line and not line.startswith(":"):
+            name, _, value = line.partition(": ")
+            event[name] = json.loads(value) if name == "data" else value
+
+
+def test_a_stream_follows_an_experiment_to_its_end(site):
+    with site.gate.closed():
+        url = site.run(wait=False).json()["url"]
+        with site.client.stream("GET", f"{url}/events") as response:
+            assert response.headers["Content-Type"].startswith("text/event-stream")
+            assert response.headers["Cache-Control"] == "no-cache"
+            stream = events(response)
+            first = next(stream)
+            assert first["retry"] == "2000"
+            told = [first, next(stream)]
+            site.gate.open()
+            told += stream
+    names = [event["event"] for event in told]
+    statuses = [event["data"]["status"] for event in told if event["event"] == "status"]
+    assert set(names) == {"status", "progress"}
+    assert statuses[-1] == "succeeded"
+    assert statuses == [status for status in ("queued", "running", "succeeded") if status in statuses]
+    fractions = [event["data"]["progress"] for event in told]
+    assert fractions == sorted(fractions)
+    assert (told[-1]["event"], told[-1]["id"], told[-1]["data"]["progress"]) == ("status", "end", 1.0)
+    assert [event["id"] for event in told[:-1]] == [str(number + 1) for number in range(len(told) - 1)]
+
+
+def test_the_stream_of_a_finished_experiment_ends_at_once(site, experiment):
+    told = list(events(site.client.get(f"{experiment['url']}/events")))
+    assert [event["data"]["status"] for event in told] == ["succeeded"] * len(told)
+
+
+def test_who_has_seen_the_end_is_told_to_stop(site, experiment):
+    response = site.client.get(f"{experiment['url']}/events", headers={"Last-Event-ID": "end"})
+    assert (response.status_code, response.content) == (204, b"")
+
+
+def test_cancelling_ends_the_stream(site, operator):
+    with site.gate.closed():
+        url = site.run(wait=False).json()["url"]
+        with site.client.stream("GET", f"{url}/events") as response:
+            stream = events(response)
+            next(stream)
+            site.client.delete(url, headers=operator)
+            assert list(stream)[-1]["data"]["status"] == "cancelled"
+
+
+def test_a_client_that_goes_is_followed_no_longer(site, until):
+    listeners = site.service._following._listeners
+    with site.gate.closed():
+        record = site.run(wait=False).json()
+        with site.visitor() as client, client.stream("GET", f"{record['url']}/events") as response:
+            next(events(response))
+            until(lambda: record["id"] in listeners)
+        until(lambda: record["id"] not in listeners)
+
+
+def test_head_of_a_stream_ends_at_once(site):
+    with site.gate.closed():
+        url = site.run(wait=False).json()["url"]
+        response = site.client.head(f"{url}/events")
+        assert (response.status_code, response.content) == (200, b"")
+
+
+@pytest.mark.parametrize("path", ["none", "a%00b"])
+def test_an_unknown_experiment_is_not_found(site, path):
+    response = site.client.get(f"/api/v1/experiments/{path}/events")
+    assert (response.status_code, response.headers["Content-Type"]) == (404, "application/problem+json")

@@ -1,0 +1,110 @@
+"""``POST /api/v1/synthesize``."""
+
+import socket
+from io import BytesIO
+
+import pytest
+from PIL import Image
+
+URL = "/api/v1/synthesize"
+
+
+def send(site, data, headers=None, **fields):
+    fields = {"method": "rpn", **fields}
+    return site.client.post(URL, files={"file": ("photo.png", data)}, data=fields, headers=headers)
+
+
+def test_a_photograph_comes_back_as_its_texture(site, picture):
+    response = send(
+        site, picture(), crop="4,4,32,24", width="64", height="50", seed="7", alpha="0.2", window="gaussian"
+    )
+    assert (response.status_code, response.headers["Content-Type"]) == (200, "image/png")
+    assert Image.open(BytesIO(response.content)).size == (64, 50)
+    assert response.headers["Content-Disposition"] == 'inline; filename="rpn-texture.png"'
+
+
+def test_the_same_seed_gives_the_same_bytes_and_another_seed_others(site, picture):
+    first, second, other = (send(site, picture(), seed=seed).content for seed in ("7", "7", "8"))
+    assert first == second != other
+
+
+def test_it_is_the_texture_that_an_experiment_makes(site, picture):
+    sample = site.upload(picture())["id"]
+    crop = {"x": 4, "y": 4, "width": 32, "height": 24}
+    record = site.finished(inputs=[{"sample": sample, "crop": crop}], parameters={"seed": 3, "width": 50})
+    kept = site.client.get(record["outputs"][0]["url"]).content
+    assert send(site, picture(), crop="4,4,32,24", seed="3", width="50").content == kept
+
+
+def test_empty_fields_count_as_left_out(site, picture):
+    response = send(site, picture(), crop="", width="", height="", seed="")
+    assert Image.open(BytesIO(response.content)).size == (48, 40)
+
+
+@pytest.mark.parametrize(
+    ("accept", "field", "media_type"),
+    [
+        (None, None, "image/png"),
+        ("image/webp", None, "image/webp"),
+        ("image/jpeg;q=0.9, image/png;q=0.1", None, "image/jpeg"),
+        ("text/html, */*", None, "image/png"),
+        ("image/webp", "tiff", "image/tiff"),
+    ],
+)
+def test_the_field_or_the_accept_header_chooses_the_format(site, picture, accept, field, media_type):
+    fields = {"format": field} if field else {}
+    response = send(site, picture(), headers={"Accept": accept} if accept else None, **fields)
+    assert response.headers["Content-Type"] == media_type
+
+
+@pytest.mark.parametrize(
+    ("fields", "field"),
+    [
+        ({"method": ""}, "method"),
+        ({"method": "nothing"}, "method"),
+        ({"crop": "1,2,3"}, "crop"),
+        ({"crop": "0,0,900,900"}, "crop"),
+        ({"format": "gif"}, "format"),
+        ({"depth": "12"}, "depth"),
+        ({"format": "jpeg", "depth": "16"}, "depth"),
+        ({"alpha": "much"}, "alpha"),
+        ({"colour": "red"}, "colour"),
+    ],
+)
+def test_a_fault_is_refused_with_the_name_of_its_form_field(site, picture, fields, field):
+    response = send(site, picture(), **fields)
+    assert (response.status_code, response.headers["Content-Type"]) == (422, "application/problem+json")
+    assert [fault["field"] for fault in response.json()["errors"]] == [field]
+
+
+def test_a_form_without_a_file_is_refused(site):
+    response = site.client.post(URL, files={"method": (None, "rpn")})
+    assert (response.status_code, response.json()["errors"][0]["field"]) == (422, "file")
+
+
+def test_nothing_of_it_is_kept(serve, tmp_path, picture):
+    with serve(tmp_path) as site:
+        before = site.service.counts()
+        assert send(site, picture()).status_code == 200
+        assert send(site, picture(), alpha="9").status_code == 422
+        assert site.service.counts() == before
+        assert site.client.get("/api/v1/experiments").json()["experiments"] == []
+        assert list((site.settings.data_dir / "incoming").iterdir()) == []
+
+
+def test_hanging_up_cancels_the_run(site, picture, until):
+    def running() -> int:
+        counts = site.service.counts()
+        return counts.get("running", 0) + counts.get("queued", 0)
+
+    until(lambda: running() == 0)
+    with site.gate.closed():
+        with site.visitor() as client:
+            request = client.build_request("POST", URL, files={"file": ("a.png", picture())}, data={"method": "rpn"})
+            body = request.read()
+        host, port = site.url.removeprefix("http://").split(":")
+        with socket.create_connection((host, int(port))) as connection:
+            head = f"POST {URL} HTTP/1.1\r\nHost: {host}\r\nContent-Type: {request.headers['Content-Type']}\r\n"
+            connection.sendall(f"{head}Content-Length: {len(body)}\r\n\r\n".encode() + body)
+            until(running)
+        until(lambda: running() == 0)

@@ -1,0 +1,82 @@
+"""``/healthz``, ``/readyz`` and ``/metrics``."""
+
+import threading
+
+import httpx
+from prometheus_client.parser import text_string_to_metric_families
+
+from app.main import create_app
+
+
+def test_alive_and_ready(site):
+    assert site.client.get("/healthz").json() == {"status": "alive"}
+    assert site.client.get("/readyz").json() == {"status": "ready"}
+
+
+def test_alive_long_before_ready(site, serving, until):
+    """The web is up while the engine starts, and says that it cannot take work."""
+    start = threading.Event()
+
+    class Slow:
+        ready = False
+
+        def start(self) -> None:
+            start.wait(20)
+            self.ready = True
+
+        def close(self) -> None:
+            assert self.ready
+
+    with serving(create_app(site.settings, Slow())) as url:
+        assert httpx.get(f"{url}/healthz").status_code == 200
+        response = httpx.get(f"{url}/readyz")
+        assert (response.status_code, response.headers["Retry-After"]) == (503, "1")
+        assert response.headers["Content-Type"] == "application/problem+json"
+        start.set()
+        until(lambda: httpx.get(f"{url}/readyz").status_code == 200)
+
+
+def metrics(site):
+    response = site.client.get("/metrics")
+    assert response.headers["Content-Type"].startswith("text/plain")
+    return {
+        (sample.name, *sorted(sample.labels.items())): sample.value
+        for family in text_string_to_metric_families(response.text)
+        for sample in family.samples
+    }
+
+
+def requests(found, method, route, status):
+    labels = (("method", method), ("route", route), ("status", status))
+    return found.get(("microtexture_http_requests_total", *labels), 0)
+
+
+def test_requests_are_counted_by_route_and_status(site, experiment):
+    route = "/api/v1/experiments/{experiment_id}"
+    before = metrics(site)
+    site.client.get(experiment["url"])
+    site.client.head(experiment["url"])
+    site.client.get("/api/v1/experiments/none")
+    site.client.get("/some/where")
+    after = metrics(site)
+    for method, path, status in (
+        ("GET", route, "200"),
+        ("HEAD", route, "200"),
+        ("GET", route, "404"),
+        ("GET", "none", "404"),
+    ):
+        assert requests(after, method, path, status) == requests(before, method, path, status) + 1
+    seconds = ("microtexture_http_request_seconds_count", ("route", route))
+    assert after[seconds] == before.get(seconds, 0) + 3
+    assert not any(experiment["id"] in str(name) for name in after)
+
+
+def test_experiments_and_the_queue_are_told(site, experiment, until):
+    with site.gate.closed():
+        first = site.run(wait=False).json()
+        until(lambda: site.client.get(first["url"]).json()["status"] == "running")
+        site.run(wait=False)
+        found = metrics(site)
+        assert found["microtexture_queue_length",] == 1
+        assert found["microtexture_ready",] == 1
+        assert found["microtexture_experiments", ("status", "succeeded")] >= 1

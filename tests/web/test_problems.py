@@ -1,0 +1,176 @@
+"""Every error under ``/api`` is a problem, every error elsewhere a page."""
+
+import asyncio
+import logging
+
+import httpx
+import pytest
+
+from app import errors
+from app.main import create_app
+from app.web.problems import STATUS, title
+
+PROBLEM = "application/problem+json"
+
+
+def test_every_error_has_a_status_code():
+    children = {kind for kind in vars(errors).values() if isinstance(kind, type) and issubclass(kind, errors.AppError)}
+    assert children - {errors.AppError} == set(STATUS)
+
+
+def test_titles_are_those_of_rfc_9110():
+    assert [title(status) for status in (413, 422, 404)] == ["Content Too Large", "Unprocessable Content", "Not Found"]
+
+
+def test_a_problem_says_what_rfc_9457_asks_for(site):
+    response = site.client.get("/api/v1/experiments/none")
+    problem = response.json()
+    assert response.headers["Content-Type"] == PROBLEM
+    assert problem["type"] == "about:blank"
+    assert problem["title"] == "Not Found"
+    assert problem["status"] == response.status_code == 404
+    assert problem["detail"]
+    assert response.headers["Cache-Control"] == "no-store"
+
+
+@pytest.mark.parametrize("path", ["/api/", "/api/v1/", "/api/v2/methods", "/api/v1/nothing", "/api/v1/methods/nothing"])
+def test_unknown_addresses_of_the_api(site, path):
+    response = site.client.get(path)
+    assert (response.status_code, response.headers["Content-Type"]) == (404, PROBLEM)
+
+
+@pytest.mark.parametrize("path", ["/nothing", "/experiments/none", "/static/none.css"])
+def test_unknown_addresses_elsewhere_are_pages(site, path):
+    response = site.client.get(path)
+    assert response.status_code == 404
+    assert response.headers["Content-Type"].startswith("text/html")
+
+
+@pytest.mark.parametrize(
+    ("method", "path", "allow"),
+    [
+        ("PUT", "/api/v1/experiments/x", {"GET", "HEAD", "PATCH", "DELETE"}),
+        ("DELETE", "/api/v1/experiments", {"GET", "HEAD", "POST"}),
+        ("GET", "/api/v1/synthesize", {"POST"}),
+        ("HEAD", "/api/v1/synthesize", {"POST"}),
+        ("OPTIONS", "/api/v1/methods", {"GET", "HEAD"}),
+        ("BREW", "/api/v1/methods", {"GET", "HEAD"}),
+    ],
+)
+def test_another_method_is_told_those_allowed(site, method, path, allow):
+    response = site.client.request(method, path)
+    assert (response.status_code, set(response.headers["Allow"].split(", "))) == (405, allow)
+    assert response.headers["Content-Type"] == PROBLEM
+
+
+@pytest.mark.parametrize(
+    ("content", "content_type", "status"),
+    [
+        (b"{", "application/json", 400),
+        (b'{"method": "\xff"}', "application/json", 400),
+        (b'{"a": ' * 50_000, "application/json", 400),
+        (b"9" * 5000, "application/json", 400),
+        (b"[]", "application/json", 422),
+        (b"null", "application/json", 422),
+        (b"", "application/json", 422),
+        (b"{}", "text/plain", 415),
+        (b"{}", "application/x-www-form-urlencoded", 415),
+        (b"{}", None, 415),
+        (b'{"method":"rpn","inputs":[{"sample":"gravel_gray"}],"parameters":{"alpha":NaN}}', "application/json", 422),
+        (b'{"method":"\\ud800","inputs":[{"sample":"gravel_gray"}]}', "application/json", 422),
+        (b'{"method":"rpn","inputs":[{"sample":"gravel_gray"}],"parameters":{"\\ud800":1}}', "application/json", 422),
+        (
+            b'{"method":"rpn","inputs":[{"sample":"gravel_gray"}],"parameters":{"window":"\\ud800"}}',
+            "application/json",
+            422,
+        ),
+    ],
+    ids=[
+        "broken",
+        "not UTF-8",
+        "deep",
+        "huge number",
+        "list",
+        "null",
+        "empty",
+        "text",
+        "form",
+        "untyped",
+        "NaN",
+        "surrogate",
+        "surrogate name",
+        "surrogate value",
+    ],
+)
+def test_a_body_that_is_not_the_json_that_is_asked_for(site, content, content_type, status):
+    headers = {"Content-Type": content_type} if content_type else {}
+    response = site.client.post("/api/v1/experiments", content=content, headers=headers)
+    assert (response.status_code, response.headers["Content-Type"]) == (status, PROBLEM)
+
+
+FORM = {"Content-Type": "multipart/form-data; boundary=b"}
+FILE = b'--b\r\nContent-Disposition: form-data; name="file"; filename="a.png"\r\n\r\nx'
+
+
+@pytest.mark.parametrize(
+    ("content", "headers", "status"),
+    [
+        (b"", {"Content-Type": "multipart/form-data"}, 400),
+        (b"", {"Content-Type": "multipart/form-data; boundary=" + "b" * 300}, 400),
+        (b"nonsense", FORM, 400),
+        (FILE, FORM, 400),
+        (b'--b\r\nContent-Disposition: form-data; name="\xff"\r\n\r\nx\r\n--b--\r\n', FORM, 400),
+        (b'--b\r\nContent-Disposition: form-data; name="a"\r\n\r\n\xff\r\n--b--\r\n', FORM, 400),
+        (b"--b\r\n\r\nx\r\n--b--\r\n", FORM, 400),
+        (b'--b\r\nContent-Disposition: form-data; name="a"\r\n\r\n' + b"x" * 20_000 + b"\r\n--b--\r\n", FORM, 400),
+        (b"".join(b'--b\r\nContent-Disposition: form-data; name="%d"\r\n\r\nx\r\n' % i for i in range(99)), FORM, 400),
+        (FILE + b"\r\n" + FILE + b"\r\n--b--\r\n", FORM, 400),
+        (b"file=x", {"Content-Type": "application/x-www-form-urlencoded"}, 415),
+        (b"x", {"Content-Type": "image/png"}, 415),
+        (b"x", {}, 415),
+    ],
+    ids=[
+        "no boundary",
+        "long boundary",
+        "nonsense",
+        "cut off",
+        "name not UTF-8",
+        "text not UTF-8",
+        "no name",
+        "long field",
+        "many fields",
+        "two files",
+        "urlencoded",
+        "bare file",
+        "untyped",
+    ],
+)
+@pytest.mark.parametrize("path", ["/api/v1/samples", "/api/v1/synthesize"])
+def test_a_form_that_cannot_be_read(site, path, content, headers, status):
+    response = site.client.post(path, content=content, headers=headers)
+    assert (response.status_code, response.headers["Content-Type"]) == (status, PROBLEM)
+    assert list((site.settings.data_dir / "incoming").iterdir()) == []
+
+
+def test_an_unexpected_error_tells_nothing_and_is_logged(site, caplog):
+    class Broken:
+        ready = True
+
+        def start(self) -> None: ...
+
+        def close(self) -> None: ...
+
+        def bundled_samples(self):
+            raise RuntimeError("the password is swordfish")
+
+    transport = httpx.ASGITransport(create_app(site.settings, Broken()), raise_app_exceptions=False)
+
+    async def ask():
+        async with httpx.AsyncClient(transport=transport, base_url="http://test") as client:
+            return await client.get("/api/v1/samples")
+
+    with caplog.at_level(logging.ERROR):
+        response = asyncio.run(ask())
+    assert (response.status_code, response.headers["Content-Type"]) == (500, PROBLEM)
+    assert "swordfish" not in response.text
+    assert "Content-Security-Policy" in response.headers
