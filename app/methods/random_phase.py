@@ -13,9 +13,9 @@ from app.images.png import PngWriter
 from app.methods.model import Context, Method, Picture, Reference, Size, Slot, Source, StillParams
 from app.synthesis.field import Field, Noise, row_blocks
 from app.synthesis.levels import Extent, Levels
-from app.synthesis.periodic import periodic_spectrum, smooth_component
+from app.synthesis.periodic import periodic_spectrum, smooth_planes
 from app.synthesis.spectral import log_modulus
-from app.synthesis.spot import centre, spot_of
+from app.synthesis.spot import centre, make_spot
 from app.synthesis.team import Team
 
 ADVANCED = {"advanced": True}
@@ -101,7 +101,7 @@ class _Run:
             field.emit(extent, "range")
             low, high = extent.low, extent.high
         writer = PngWriter(self._width, self._height, len(field.mean), self._context.depth)
-        field.emit(Levels(writer.write, low, high, self._peak))
+        field.emit(Levels(writer.write, len(field.mean), low, high, self._peak))
         return Picture("texture", "Texture", self._width, self._height, writer.finish())
 
     def _field(self, start: float, ends: dict[str, float]) -> Field:
@@ -111,23 +111,25 @@ class _Run:
         def progress(stage: str, part: float) -> None:
             self._context.progress(stage, begins[stage] + part * (ends[stage] - begins[stage]))
 
-        return Field(self._source.pixels, self._noise, self._team, self._context.threads, progress)
+        return Field(self._source.pixels, self._noise, self._team, progress)
 
     def pictures(self) -> Iterator[Picture]:
         yield self.texture()
         h = self._source.pixels
-        yield self._picture("crop", "Crop", h, 0.82)
+        yield self._picture("crop", "Crop", h.transpose(2, 0, 1), 0.82)
         h = centre(h, self._height, self._width)
         mean = h.mean(axis=(0, 1), dtype=np.float64)
-        smooth = smooth_component(h, self._context.threads)
-        p = h - smooth
+        smooth = smooth_planes(h, self._context.threads)
+        p = h.transpose(2, 0, 1) - smooth
         yield self._picture("periodic", "Periodic component", p, 0.84)
-        yield self._picture("smooth", "Smooth component, the mean added", smooth + mean.astype(np.float32), 0.86)
+        yield self._picture(
+            "smooth", "Smooth component, the mean added", smooth + mean.astype(np.float32)[:, None, None], 0.86
+        )
         del smooth
-        if p.shape[:2] == (self._height, self._width):
+        if p.shape[1:] == (self._height, self._width):
             yield self._picture("spot", "Spot", p, 0.88)
         else:
-            spot = spot_of(p, mean, self._height, self._width, self._params.alpha, self._params.window)
+            spot = make_spot(p, mean, self._height, self._width, self._params.alpha, self._params.window)
             yield self._write("spot", "Extended spot", self._height, self._width, spot.rows, 0.88)
         del p
         spectrum = periodic_spectrum(h)
@@ -138,8 +140,8 @@ class _Run:
         yield self._spectrum("output-spectrum", "Log-modulus of the texture", power, self._width, 1.0)
 
     def _picture(self, name: str, title: str, values: NDArray[np.float32], end: float) -> Picture:
-        height, width = values.shape[:2]
-        return self._write(name, title, height, width, lambda first, last: values[first:last], end)
+        height, width = values.shape[1:]
+        return self._write(name, title, height, width, lambda first, last: values[:, first:last].copy(), end)
 
     def _write(
         self,
@@ -150,12 +152,12 @@ class _Run:
         rows: Callable[[int, int], NDArray[np.float32]],
         end: float,
     ) -> Picture:
-        """A picture of float rows (n, W, C) in the sample's range, cut off outside it."""
+        """Write a picture of float rows (C, n, W) in the sample's range, cut off outside it."""
         writer = PngWriter(width, height, self._source.pixels.shape[2], self._context.depth)
-        levels = Levels(writer.write, 0, self._source.peak, self._peak)
+        levels = Levels(writer.write, writer.channels, 0, self._source.peak, self._peak)
 
         def write(block: tuple[int, int]) -> None:
-            levels(block[0], np.array(rows(*block).transpose(2, 0, 1), order="C"))
+            levels(block[0], rows(*block))
 
         self._team.run(write, row_blocks(height), lambda part: self._context.progress(name, end - 0.02 * (1 - part)))
         return Picture(name, title, width, height, writer.finish())

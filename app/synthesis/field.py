@@ -9,7 +9,7 @@ Three passes over blocks, each shared out over the threads of a `Team`:
 Every block of columns has its own stream of random numbers, so the result does not depend on the number of threads.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import Literal
 
@@ -17,9 +17,9 @@ import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
-from app.synthesis.periodic import SmoothSpectrum, periodic_component
+from app.synthesis.periodic import SmoothSpectrum, periodic_planes
 from app.synthesis.spectral import column_blocks, random_block
-from app.synthesis.spot import Profile, Spot, centre, spot_of
+from app.synthesis.spot import Profile, centre, make_spot
 from app.synthesis.team import Team
 
 ROWS = 64  # rows of a block
@@ -27,7 +27,7 @@ ROWS = 64  # rows of a block
 Complex = NDArray[np.complex64]
 Real = NDArray[np.float32]
 Progress = Callable[[str, float], None]
-Sink = Callable[[int, Real], None]
+Sink = Callable[[int, Iterable[Real]], None]
 
 
 @dataclass(frozen=True)
@@ -62,15 +62,18 @@ class Noise:
     add_smooth: bool = False
 
 
-def channel_means(h: Real) -> NDArray[np.float64]:
-    """Mean of every channel of an image (H, W, C), summed in double precision."""
-    sums: NDArray[np.float64] = h.sum(axis=0, dtype=np.float64).sum(axis=0) / (h.shape[0] * h.shape[1])
-    return sums
-
-
 def row_blocks(height: int) -> list[tuple[int, int]]:
     """First and last-plus-one row of every block."""
     return [(first, min(first + ROWS, height)) for first in range(0, height, ROWS)]
+
+
+def _blocks_of(channels: int, rows: int, width: int) -> list[Complex]:
+    """Uninitialised blocks of columns (channels, rows, columns), in one piece of memory so that huge pages can back it."""
+    memory = np.empty(channels * rows * (width // 2 + 1), np.complex64)
+    return [
+        memory[channels * rows * first : channels * rows * last].reshape(channels, rows, last - first)
+        for first, last in column_blocks(width)
+    ]
 
 
 class Field:
@@ -91,59 +94,66 @@ class Field:
         If the sample holds values that are not finite, or ``add_smooth`` is asked for at another size.
     """
 
-    def __init__(self, h: Real, noise: Noise, team: Team, threads: int, progress: Progress) -> None:
+    def __init__(self, h: Real, noise: Noise, team: Team, progress: Progress) -> None:
         self.noise = noise
         self._team = team
         self._progress = progress
-        h = centre(h, noise.height, noise.width)
-        if not np.isfinite(h).all():
-            raise ValueError("The sample holds values that are not finite.")
-        self.mean = channel_means(h)
-        self._smooth: SmoothSpectrum | None = None
         progress("spot", 0)
-        if h.shape[:2] == (noise.height, noise.width):
+        h = centre(h, noise.height, noise.width)
+        height, width, channels = h.shape
+        self._top = (noise.height - height) // 2
+        self._smooth: SmoothSpectrum | None = None
+        if (height, width) == (noise.height, noise.width):
             self._smooth = SmoothSpectrum(h)
-            spot = Spot(h - self.mean.astype(np.float32), self.mean, noise.height, noise.width)
+            # What is taken off first need only be near the mean: the rest of the mean is read off the transforms.
+            near = h[::8, ::8].mean(axis=(0, 1), dtype=np.float64).astype(np.float32)
+            self._blocks = self._transform_rows(h.transpose(2, 0, 1), near)
+            self.mean = near + self._blocks[0][:, :, 0].real.sum(axis=1, dtype=np.float64) / (height * width)
         elif noise.add_smooth:
             raise ValueError("The smooth component can be added only to a texture of the sample's own size.")
         else:
-            p = periodic_component(h, threads)
-            spot = spot_of(p, self.mean, noise.height, noise.width, noise.alpha, noise.window)
-        self._spot = spot
-        self._blocks: list[Complex] = self._transform_rows()
+            p = periodic_planes(h, team.threads)
+            self.mean = p.mean(axis=(1, 2), dtype=np.float64)
+            spot = make_spot(p, self.mean, noise.height, noise.width, noise.alpha, noise.window)
+            self._blocks = self._transform_rows(spot.planes, np.zeros(channels, np.float32))
+        if not np.isfinite(self.mean).all():
+            raise ValueError("The sample holds values that are not finite.")
 
-    def _transform_rows(self) -> list[Complex]:
-        spot, channels = self._spot, len(self.mean)
-        high, wide = spot.values.shape[:2]
-        spectra = [np.empty((channels, high, last - first), np.complex64) for first, last in column_blocks(spot.width)]
+    def _transform_rows(self, planes: Real, offsets: Real) -> list[Complex]:
+        """Blocks of columns (C, rows of the spot, columns) of the transforms along x of the centred planes − offsets."""
+        (channels, high, wide), width = planes.shape, self.noise.width
+        left = (width - wide) // 2
+        spectra = _blocks_of(channels, high, width)
 
         def transform(rows: tuple[int, int]) -> None:
             begin, end = rows
-            padded = np.zeros((channels, end - begin, spot.width), np.float32)
-            padded[:, :, spot.left : spot.left + wide] = spot.values[begin:end].transpose(2, 0, 1)
+            padded = np.zeros((channels, end - begin, width), np.float32)
+            inner = padded[:, :, left : left + wide]
+            for channel, plane in enumerate(inner):
+                plane[...] = planes[channel, begin:end]
+                plane -= offsets[channel]
             rows_spectrum = scipy.fft.rfft(padded, workers=1)
-            for (first, last), target in zip(column_blocks(spot.width), spectra, strict=True):
+            for (first, last), target in zip(column_blocks(width), spectra, strict=True):
                 target[:, begin:end] = rows_spectrum[:, :, first:last]
 
         self._team.run(transform, row_blocks(high), lambda part: self._progress("spot", part))
         return spectra
 
-    def _column_spectrum(self, index: int) -> Complex:
-        """One block of columns of the noise's spectrum, without the mean."""
+    def _column_spectrum(self, index: int, target: Complex) -> Complex:
+        """One block of columns of the noise's spectrum, without the mean; ``target`` may be overwritten."""
         noise, rows_spectrum = self.noise, self._blocks[index]
-        channels, high, columns = rows_spectrum.shape
         first, last = column_blocks(noise.width)[index]
-        if high == noise.height:
-            spectrum = rows_spectrum
-        else:
-            spectrum = np.zeros((channels, noise.height, columns), np.complex64)
-            spectrum[:, self._spot.top : self._spot.top + high] = rows_spectrum
-        spectrum = scipy.fft.fft(spectrum, axis=1, overwrite_x=True, workers=1)
+        if target is not rows_spectrum:
+            end = self._top + rows_spectrum.shape[1]
+            target[:, : self._top] = 0
+            target[:, self._top : end] = rows_spectrum
+            target[:, end:] = 0
+        spectrum: Complex = scipy.fft.fft(target, axis=1, overwrite_x=True, workers=1)
         smooth = self._smooth.block(first, last) if self._smooth else None
         if smooth is not None:
             spectrum -= smooth
         if noise.phase == "replace":
-            spectrum = np.abs(spectrum).astype(np.complex64)
+            spectrum[:] = np.abs(spectrum)
         spectrum *= random_block(noise.height, noise.width, (first, last), noise.seed, noise.rayleigh)
         if first == 0:
             spectrum[:, 0, 0] = 0
@@ -153,11 +163,17 @@ class Field:
 
     def randomise(self) -> "Field":
         """Do the columns; needed once before `emit`."""
+        height, width = self.noise.height, self.noise.width
+        done = self._blocks
+        if done[0].shape[1] < height:
+            done = _blocks_of(len(self.mean), height, width)
 
         def transform(index: int) -> None:
-            self._blocks[index] = scipy.fft.ifft(self._column_spectrum(index), axis=1, overwrite_x=True, workers=1)
+            spectrum = self._column_spectrum(index, done[index])
+            done[index] = scipy.fft.ifft(spectrum, axis=1, overwrite_x=True, workers=1)
 
-        self._team.run(transform, range(len(self._blocks)), lambda part: self._progress("random phase", part))
+        self._team.run(transform, range(len(done)), lambda part: self._progress("random phase", part))
+        self._blocks = done
         return self
 
     def power(self) -> Real:
@@ -171,27 +187,33 @@ class Field:
 
         def measure(index: int) -> None:
             first, last = column_blocks(self.noise.width)[index]
-            spectrum = self._column_spectrum(index)
+            rows_spectrum = self._blocks[index]
+            spectrum = self._column_spectrum(
+                index, np.empty((len(rows_spectrum), self.noise.height, last - first), np.complex64)
+            )
             power[:, first:last] = (spectrum.real**2 + spectrum.imag**2).mean(axis=0)
 
         self._team.run(measure, range(len(self._blocks)), lambda part: self._progress("output spectrum", part))
         return power
 
     def emit(self, sink: Sink, stage: str = "texture") -> None:
-        """Hand every row block to ``sink(first row, block)``, from the team's threads and in any order.
+        """Hand every row block to ``sink(first row, planes)``, from the team's threads and in any order.
 
-        The block is (C, rows, width) float32, the mean included; it belongs to the sink.
+        The planes, one for each channel, are (rows, width) float32, the mean included; they are made as the sink asks for
+        them and belong to it.
         """
-        width, mean = self.noise.width, self.mean.astype(np.float32)[:, None, None]
 
         def transform(rows: tuple[int, int]) -> None:
-            begin, end = rows
-            block = np.concatenate([columns[:, begin:end] for columns in self._blocks], axis=2)
-            values = scipy.fft.irfft(block, n=width, overwrite_x=True, workers=1)
-            values += mean
-            sink(begin, values)
+            sink(rows[0], self._planes(*rows))
 
         self._team.run(transform, row_blocks(self.noise.height), lambda part: self._progress(stage, part))
+
+    def _planes(self, begin: int, end: int) -> Iterator[Real]:
+        for channel, mean in enumerate(self.mean.astype(np.float32)):
+            half = np.concatenate([columns[channel, begin:end] for columns in self._blocks], axis=1)
+            plane: Real = scipy.fft.irfft(half, n=self.noise.width, workers=1)
+            plane += mean
+            yield plane
 
 
 def synthesize(h: Real, noise: Noise, threads: int = 1, progress: Progress | None = None) -> Real:
@@ -212,9 +234,10 @@ def synthesize(h: Real, noise: Noise, threads: int = 1, progress: Progress | Non
         return synthesize(h[:, :, None], noise, threads, progress)[:, :, 0]
     texture = np.empty((noise.height, noise.width, h.shape[2]), np.float32)
 
-    def store(first: int, block: Real) -> None:
-        texture[first : first + block.shape[1]] = block.transpose(1, 2, 0)
+    def store(first: int, planes: Iterable[Real]) -> None:
+        for channel, plane in enumerate(planes):
+            texture[first : first + len(plane), :, channel] = plane
 
     with Team(threads) as team:
-        Field(h, noise, team, threads, progress or (lambda stage, part: None)).randomise().emit(store)
+        Field(h, noise, team, progress or (lambda stage, part: None)).randomise().emit(store)
     return texture

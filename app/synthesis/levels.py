@@ -1,7 +1,7 @@
 """From float values to the whole numbers of a picture: cut off, or stretch; never wrap."""
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,10 +17,11 @@ class Extent:
         self.low, self.high = 0.0, float(peak)
         self._lock = threading.Lock()
 
-    def __call__(self, first: int, block: Real) -> None:
-        low, high = float(block.min()), float(block.max())
-        with self._lock:
-            self.low, self.high = min(self.low, low), max(self.high, high)
+    def __call__(self, first: int, planes: Iterable[Real]) -> None:
+        for plane in planes:
+            low, high = float(plane.min()), float(plane.max())
+            with self._lock:
+                self.low, self.high = min(self.low, low), max(self.high, high)
 
 
 class Levels:
@@ -33,22 +34,31 @@ class Levels:
     ----------
     rows : callable ``(first row, block)``
         Gets blocks (n, W, C), contiguous, uint8 or uint16 as ``peak`` asks for, valid only during the call.
+    channels : int
+        Planes that a call brings.
     low, high : float
         What becomes 0 and ``peak``.
     peak : int
         255 or 65535.
     """
 
-    def __init__(self, rows: Rows, low: float, high: float, peak: int) -> None:
-        self._rows = rows
+    def __init__(self, rows: Rows, channels: int, low: float, high: float, peak: int) -> None:
+        self._rows, self._channels = rows, channels
         self._scale = np.float32(peak / (high - low))
         self._shift = np.float32(0.5 - low * peak / (high - low))
         self._limit = np.float32(peak + 0.5)
         self._type = np.uint8 if peak == 255 else np.uint16
 
-    def __call__(self, first: int, block: Real) -> None:
-        if self._scale != 1:
-            block *= self._scale
-        block += self._shift
-        np.clip(block, 0, self._limit, out=block)
-        self._rows(first, np.ascontiguousarray(block.astype(self._type).transpose(1, 2, 0)))
+    def __call__(self, first: int, planes: Iterable[Real]) -> None:
+        pixels: NDArray[np.unsignedinteger] | None = None
+        for channel, plane in enumerate(planes):
+            if self._scale != 1:
+                plane *= self._scale
+            plane += self._shift
+            np.clip(plane, 0, self._limit, out=plane)
+            if pixels is None:
+                pixels = np.empty((*plane.shape, self._channels), self._type)
+            # Rounded in the plane first: numpy is slow where it casts and strides at once.
+            pixels[:, :, channel] = plane.astype(self._type)
+        if pixels is not None:
+            self._rows(first, pixels)

@@ -29,40 +29,58 @@ Complex = NDArray[np.complex64]
 Real = NDArray[np.float32]
 
 
+CHUNK = 1024  # rows of a matrix product, few enough for BLAS to stay in the calling thread
+
+
 @lru_cache(maxsize=32)
-def _axis(length: int, count: int) -> tuple[NDArray[np.complex128], NDArray[np.float64]]:
+def _axis(length: int, count: int) -> tuple[Complex, Real]:
     """``1 − exp(2πi k/length)`` and ``4 sin²(π k/length)`` for k = 0 … count − 1."""
     k = np.arange(count)
-    return 1 - np.exp(2j * np.pi * k / length), 4 * np.sin(np.pi * k / length) ** 2
+    turns = 1 - np.exp(2j * np.pi * k / length)
+    return turns.astype(np.complex64), (4 * np.sin(np.pi * k / length) ** 2).astype(np.float32)
 
 
 class SmoothSpectrum:
-    """ŝ of an image (H, W, C), one block of columns of the half spectrum at a time."""
+    """ŝ of an image (H, W, C), one block of columns of the half spectrum at a time.
+
+    v̂ is a sum of two products of a function of k₁ and one of k₂: as real and imaginary parts, a matrix product of inner
+    dimension 4.
+    """
 
     def __init__(self, h: Real) -> None:
         self._height, self._width = h.shape[:2]
-        self._rows_jump = scipy.fft.rfft(h[0].T - h[-1].T)[:, None, :]
-        self._columns_jump = scipy.fft.fft(h[:, 0].T - h[:, -1].T)[:, :, None]
+        channels, columns = h.shape[2], self._width // 2 + 1
+        down, self._sines = _axis(self._height, self._height)
+        across, cross_sines = _axis(self._width, columns)
+        # Denominators are laid out like the parts of complex numbers: each stands for two.
+        self._cross_sines = np.repeat(cross_sines, 2)
+        left = np.empty((channels, self._height, 2), np.complex64)
+        left[:, :, 0] = down
+        left[:, :, 1] = scipy.fft.fft(h[:, 0].T - h[:, -1].T)
+        right = np.empty((channels, 4, columns), np.complex64)
+        right[:, 0] = scipy.fft.rfft(h[0].T - h[-1].T)
+        right[:, 2] = across
+        right[:, 1::2] = 1j * right[:, ::2]
+        self._left, self._right = left.view(np.float32), right.view(np.float32)
 
     def block(self, first: int, last: int) -> Complex:
         """Columns ``first`` to ``last`` − 1 of ŝ, shape (C, H, last − first)."""
-        down, sines = _axis(self._height, self._height)
-        across, cross_sines = _axis(self._width, self._width // 2 + 1)
-        denominator = sines[:, None] + cross_sines[None, first:last]
+        smooth = np.empty((len(self._left), self._height, 2 * (last - first)), np.float32)
+        right, cross_sines = self._right[:, :, 2 * first : 2 * last], self._cross_sines[2 * first : 2 * last]
+        for y in range(0, self._height, CHUNK):
+            np.matmul(self._left[:, y : y + CHUNK], right, out=smooth[:, y : y + CHUNK])
+        denominator = self._sines[:, None] + cross_sines
         if first == 0:
-            denominator[0, 0] = np.inf
-        by_rows = (down[:, None] / denominator).astype(np.complex64)
-        by_columns = (across[None, first:last] / denominator).astype(np.complex64)
-        smooth: Complex = self._rows_jump[:, :, first:last] * by_rows
-        smooth += self._columns_jump * by_columns
-        return smooth
+            denominator[0, :2] = np.inf
+        smooth *= np.reciprocal(denominator, out=denominator)
+        return smooth.view(np.complex64)
 
     def whole(self) -> Complex:
         """All of ŝ, shape (C, H, W // 2 + 1)."""
         return self.block(0, self._width // 2 + 1)
 
 
-def periodic_spectrum(h: Real) -> Complex:
+def periodic_spectrum(h: Real, threads: int = 1) -> Complex:
     """Half spectrum p̂ of the periodic component.
 
     Parameters
@@ -75,10 +93,24 @@ def periodic_spectrum(h: Real) -> Complex:
         As `scipy.fft.rfft2` over the first two axes would give it.
     """
     if h.ndim == 2:
-        return periodic_spectrum(h[:, :, None])[:, :, 0]
-    spectrum: Complex = scipy.fft.rfft2(h, axes=(0, 1))
+        return periodic_spectrum(h[:, :, None], threads)[:, :, 0]
+    spectrum: Complex = scipy.fft.rfft2(h, axes=(0, 1), workers=threads)
     spectrum -= SmoothSpectrum(h).whole().transpose(1, 2, 0)
     return spectrum
+
+
+def smooth_planes(h: Real, threads: int = 1) -> Real:
+    """`smooth_component` of an image (H, W, C) as planes (C, H, W)."""
+    planes: Real = scipy.fft.irfft2(SmoothSpectrum(h).whole(), s=h.shape[:2], overwrite_x=True, workers=threads)
+    return planes
+
+
+def periodic_planes(h: Real, threads: int = 1) -> Real:
+    """`periodic_component` of an image (H, W, C) as planes (C, H, W)."""
+    planes = smooth_planes(h, threads)
+    for channel, plane in enumerate(planes):
+        np.subtract(h[:, :, channel], plane, out=plane)
+    return planes
 
 
 def smooth_component(h: Real, threads: int = 1) -> Real:
@@ -102,10 +134,8 @@ def smooth_component(h: Real, threads: int = 1) -> Real:
     True
     """
     if h.ndim == 2:
-        return smooth_component(h[:, :, None], threads)[:, :, 0]
-    height, width = h.shape[:2]
-    planes: Real = scipy.fft.irfft2(SmoothSpectrum(h).whole(), s=(height, width), overwrite_x=True, workers=threads)
-    return np.ascontiguousarray(planes.transpose(1, 2, 0))
+        return smooth_planes(h[:, :, None], threads)[0]
+    return smooth_planes(h, threads).transpose(1, 2, 0)
 
 
 def periodic_component(h: Real, threads: int = 1) -> Real:
@@ -131,4 +161,6 @@ def periodic_component(h: Real, threads: int = 1) -> Real:
     >>> bool((periodic_component(np.full((5, 7), 9, np.float32)) == 9).all())
     True
     """
-    return h - smooth_component(h, threads)
+    if h.ndim == 2:
+        return periodic_planes(h[:, :, None], threads)[0]
+    return periodic_planes(h, threads).transpose(1, 2, 0)

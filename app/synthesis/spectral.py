@@ -128,13 +128,13 @@ def random_spectrum(height: int, width: int, seed: int, rayleigh: bool = False) 
     )
 
 
-DECADES = 5.0
+DECADES = 4.0
 
 
 def log_modulus(power: Real, width: int, first: int, last: int) -> NDArray[np.uint8]:
     """Rows ``first`` to ``last`` − 1 of the picture of a spectrum: centred, grey, logarithmic.
 
-    Grey 255 is the greatest modulus away from the origin, and 0 is five powers of ten below it or less. The origin, which only tells
+    Grey 255 is the greatest modulus away from the origin, and 0 is four powers of ten below it or less. The origin, which only tells
     the mean, counts as the greatest.
 
     Parameters

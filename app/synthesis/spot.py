@@ -23,7 +23,7 @@ Profile = Literal["bump", "gaussian"]
 
 @lru_cache(maxsize=64)
 def window(n: int, alpha: float, profile: Profile = "bump") -> NDArray[np.float64]:
-    """The smooth transition φ_α at the n points t = (i + ½) / n, its mean square being 1.
+    """Sample the smooth transition φ_α at the n points t = (i + ½) / n, mean square 1.
 
     φ_α rises on [0, α], is constant on [α, 1 − α] and falls as it rose. On [0, α] it is
 
@@ -68,68 +68,71 @@ def window(n: int, alpha: float, profile: Profile = "bump") -> NDArray[np.float6
 
 
 def centre(h: Real, height: int, width: int) -> Real:
-    """The centre of an image, at most ``height`` × ``width`` pixels of it (a view)."""
+    """Take the centre of an image, at most ``height`` × ``width`` pixels of it (a view)."""
     top, left = max(0, (h.shape[0] - height) // 2), max(0, (h.shape[1] - width) // 2)
     return h[top : top + height, left : left + width]
 
 
 @dataclass(frozen=True)
 class Spot:
-    """An extended spot without the constant around its rectangle.
+    """An extended spot as planes, without the constant around its rectangle.
 
-    ``values`` (M₁, N₁, C) is h̃ − m on the rectangle whose first pixel is (``top``, ``left``) of an image of ``height`` × ``width``;
-    ``mean`` is m, shape (C,).
+    ``planes`` (C, M₁, N₁) is h̃ − m on the rectangle whose first pixel is (``top``, ``left``) of an image of ``height`` ×
+    ``width`` pixels; ``mean`` is m, shape (C,).
     """
 
-    values: Real
+    planes: Real
     mean: NDArray[np.float64]
     height: int
     width: int
 
     @property
     def top(self) -> int:
-        return (self.height - self.values.shape[0]) // 2
+        """First row of the rectangle."""
+        return (self.height - int(self.planes.shape[1])) // 2
 
     @property
     def left(self) -> int:
-        return (self.width - self.values.shape[1]) // 2
+        """First column of the rectangle."""
+        return (self.width - int(self.planes.shape[2])) // 2
 
     def rows(self, first: int, last: int) -> Real:
-        """Rows ``first`` to ``last`` − 1 of h̃, shape (last − first, width, C)."""
-        high, wide, channels = self.values.shape
-        rows = np.empty((last - first, self.width, channels), np.float32)
-        rows[:] = self.mean
+        """Rows ``first`` to ``last`` − 1 of h̃, shape (C, last − first, width)."""
+        channels, high, wide = self.planes.shape
+        rows = np.empty((channels, last - first, self.width), np.float32)
+        rows[:] = self.mean[:, None, None]
         begin, end = max(first, self.top), min(last, self.top + high)
         if begin < end:
-            rows[begin - first : end - first, self.left : self.left + wide] += self.values[
-                begin - self.top : end - self.top
-            ]
+            part = rows[:, begin - first : end - first, self.left : self.left + wide]
+            part += self.planes[:, begin - self.top : end - self.top]
         return rows
 
 
-def spot_of(p: Real, mean: NDArray[np.float64], height: int, width: int, alpha: float, profile: Profile) -> Spot:
-    """`extend_spot` without the constant around: what the synthesis transforms."""
-    high, wide = p.shape[:2]
+def make_spot(p: Real, mean: NDArray[np.float64], height: int, width: int, alpha: float, profile: Profile) -> Spot:
+    """`extend_spot` from planes (C, M₁, N₁), which it changes, and without the constant around."""
+    high, wide = p.shape[1:]
     gain = np.sqrt(height * width / (high * wide))
-    down = window(high, alpha, profile) if height > high else np.ones(high)
+    down = gain * window(high, alpha, profile) if height > high else np.full(high, gain)
     across = window(wide, alpha, profile) if width > wide else np.ones(wide)
-    values = (p - mean.astype(np.float32)) * (gain * down[:, None, None] * across[None, :, None]).astype(np.float32)
-    return Spot(values, mean, height, width)
+    p -= mean.astype(np.float32)[:, None, None]
+    p *= (down[:, None] * across).astype(np.float32)
+    return Spot(p, mean, height, width)
 
 
 def extend_spot(
     p: Real, mean: NDArray[np.float64], height: int, width: int, alpha: float = 0.1, profile: Profile = "bump"
 ) -> Real:
-    """The extended spot h̃ of a periodic component.
+    """Extend a periodic component to the spot h̃ of a larger noise.
 
-    An axis that is not extended is not attenuated. The mean square of φ_α is 1 along each extended axis, so the variance of h̃ is
-    that of p as far as p is homogeneous.
+    An axis that is not extended is not attenuated. The mean square of φ_α is 1 along each extended axis, so the
+    variance of h̃ is that of p as far as p is homogeneous.
 
     Parameters
     ----------
     p : ndarray of float32, shape (M₁, N₁, C)
-        Periodic component; no axis longer than the output's. (A sample that is larger than the output along an axis is replaced by
-        its centre *before* its periodic component is taken, see `centre`: mean and variance are then those of the centre.)
+        Periodic component; no axis longer than the output's. (A sample that is larger than the output along an axis
+        is replaced by its centre *before* its periodic component is taken, see `centre`: mean and variance are then
+        those of the centre.)
     mean : ndarray of float64, shape (C,)
         Mean of every channel.
     height, width : int
@@ -141,4 +144,5 @@ def extend_spot(
     -------
     ndarray of float32, shape (height, width, C)
     """
-    return spot_of(p, mean, height, width, alpha, profile).rows(0, height)
+    planes = p.transpose(2, 0, 1).copy()
+    return make_spot(planes, mean, height, width, alpha, profile).rows(0, height).transpose(1, 2, 0)

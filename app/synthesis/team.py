@@ -12,6 +12,7 @@ class Team:
     """A pool of ``threads`` threads, to be used in a ``with`` statement."""
 
     def __init__(self, threads: int) -> None:
+        self.threads = threads
         self._pool = ThreadPoolExecutor(max(1, threads), thread_name_prefix="synthesis")
 
     def __enter__(self) -> "Team":
