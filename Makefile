@@ -4,6 +4,8 @@ PYTHON ?= python3
 PORT ?= 8000
 VENV := .venv
 BIN := $(VENV)/bin
+# Debian's name first; CHROMIUM=/path/to/another takes that one.
+WITH_BROWSER = CHROMIUM="$${CHROMIUM:-$$(command -v chromium chromium-browser google-chrome | head -n 1)}"
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 export PIP_NO_INPUT := 1
 
@@ -19,7 +21,7 @@ run: setup ## serve on http://127.0.0.1:$(PORT), data in ./data
 	$(BIN)/microtexture serve --port $(PORT)
 
 test: lint programs ## everything: lint, types, unit, doctest, API, acceptance and crash tests
-	$(BIN)/pytest
+	$(WITH_BROWSER) $(BIN)/pytest -m 'not load'
 
 lint: $(VENV)/.ready-dev ## ruff and mypy
 	$(BIN)/ruff check .
@@ -36,7 +38,7 @@ bench: $(VENV)/.ready-dev ## measure kernels and service on this machine and pri
 	$(BIN)/python -m benchmarks
 
 readme-picture: programs ## make docs/gallery.png anew with a server and a browser
-	$(BIN)/python scripts/readme_picture.py
+	$(WITH_BROWSER) $(BIN)/python scripts/readme_picture.py
 
 lock: $(VENV)/.ready-dev ## resolve the dependencies of pyproject.toml anew
 	$(BIN)/uv pip compile $(LOCK_OPTIONS) --group build pyproject.toml -o requirements.lock
@@ -54,12 +56,14 @@ $(BIN)/python:
 	$(PYTHON) -m venv $(VENV)
 
 $(VENV)/.ready: requirements.lock pyproject.toml | $(BIN)/python
-	$(PIP) install --quiet --require-hashes -r requirements.lock
-	$(PIP) install --quiet --no-deps --no-build-isolation --editable .
+	@echo "Installing the locked dependencies into $(VENV)"
+	@$(PIP) install --quiet --require-hashes -r requirements.lock
+	@$(PIP) install --quiet --no-deps --no-build-isolation --editable .
 	@touch $@
 
 $(VENV)/.ready-dev: requirements-dev.lock $(VENV)/.ready
-	$(PIP) install --quiet --require-hashes -r requirements-dev.lock
+	@echo "Installing what the tests need into $(VENV)"
+	@$(PIP) install --quiet --require-hashes -r requirements-dev.lock
 	@touch $@
 
 programs: $(VENV)/.ready-dev

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import httpx
 import psutil
@@ -20,11 +21,28 @@ PATIENCE = 60.0  # seconds until a start has failed
 
 @dataclass(frozen=True)
 class Served:
-    """A running service: a client of it, its process, and the seconds from its start to readiness."""
+    """A running service: a client of it, its process, and the seconds from its start until it was ready."""
 
     client: httpx.Client
     process: psutil.Process
     seconds_to_ready: float
+
+    def wait_for_sample(self, sample_id: str) -> None:
+        """Wait until a bundled photograph has come in; the service takes work before that."""
+        until = time.monotonic() + PATIENCE
+        while self.client.get(f"/api/v1/samples/{sample_id}").status_code != 200:
+            if time.monotonic() > until:
+                raise RuntimeError(f"The bundled sample {sample_id} did not come in.")
+            time.sleep(0.05)
+
+    def finish(self, body: dict[str, Any]) -> dict[str, Any]:
+        """Send an experiment and return its finished record."""
+        answer = self.client.post("/api/v1/experiments", json=body, headers={"Prefer": "wait=60"})
+        answer.raise_for_status()
+        record: dict[str, Any] = answer.json()
+        if record["status"] != "succeeded":
+            raise RuntimeError(f"The experiment {record['status']}: {record['error']}")
+        return record
 
 
 @contextmanager

@@ -12,7 +12,6 @@ from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
-import httpx
 import psutil
 
 from app.experiments.files import with_hidden
@@ -40,16 +39,6 @@ def body(seed: int, **parameters: object) -> dict[str, Any]:
         "parameters": {"seed": seed, **parameters},
         "listed": True,
     }
-
-
-def finish(client: httpx.Client, seed: int, **parameters: object) -> dict[str, Any]:
-    """Send an experiment and return its finished record."""
-    answer = client.post("/api/v1/experiments", json=body(seed, **parameters), headers={"Prefer": "wait=60"})
-    answer.raise_for_status()
-    record: dict[str, Any] = answer.json()
-    if record["status"] != "succeeded":
-        raise RuntimeError(f"The experiment {record['status']}: {record['error']}")
-    return record
 
 
 def directly(photo: Path, seed: int, threads: int) -> int:
@@ -81,7 +70,7 @@ def overhead(service: Served, photo: Path, threads: int) -> None:
     totals, kernels, directs, stages = [], [], [], list[dict[str, float]]()
     for seed in range(SINGLE_RUNS):
         start = time.perf_counter()
-        record = finish(service.client, seed)
+        record = service.finish(body(seed))
         totals.append(time.perf_counter() - start)
         stages.append(record["timings"])
         kernels.append(seconds(lambda seed=seed: kernel(photo, seed, threads)))  # type: ignore[misc]
@@ -112,7 +101,7 @@ def throughput(service: Served, photo: Path, settings: Settings) -> None:
             list(processes.map(directly, [photo] * MANY, range(MANY), [settings.threads] * MANY))
 
         def over_rest() -> None:
-            list(clients.map(lambda seed: finish(service.client, seed), range(1000, 1000 + MANY)))
+            list(clients.map(lambda seed: service.finish(body(seed)), range(1000, 1000 + MANY)))
 
         for _ in range(3):
             direct_rates.append(MANY / seconds(direct))
@@ -125,7 +114,7 @@ def throughput(service: Served, photo: Path, settings: Settings) -> None:
 
 def pages(service: Served) -> None:
     """How long the pages take, over a kept connection."""
-    experiment = finish(service.client, 7)["id"]
+    experiment = service.finish(body(7))["id"]
     for path in ("/", f"/samples/{SAMPLE}", f"/experiments/{experiment}", "/archive"):
         get: Callable[[], object] = lambda path=path: service.client.get(path).raise_for_status()  # type: ignore[misc] # noqa: E731
         get()
@@ -137,14 +126,14 @@ def pages(service: Served) -> None:
 def memory(service: Served) -> None:
     """How much more the worker process takes at the peak of a run of 4096² than before it."""
     for seed in range(8):
-        finish(service.client, 50 + seed)  # every worker has loaded what it loads once
+        service.finish(body(50 + seed))  # every worker has loaded what it loads once
     family = [service.process, *service.process.children(recursive=True)]
     idle = {}
     for process in family:
         Path(f"/proc/{process.pid}/clear_refs").write_text("5", encoding="ascii")  # resets the peak
         idle[process.pid] = process.memory_info().rss
     took = time.perf_counter()
-    finish(service.client, 7, width=4096, height=4096)
+    service.finish(body(7, width=4096, height=4096))
     took = time.perf_counter() - took
     above = {process: _peak(process) - idle[process.pid] for process in family if process.is_running()}
     hungriest = max(above, key=lambda process: above[process])
@@ -157,15 +146,6 @@ def _peak(process: psutil.Process) -> int:
     return 1024 * int(next(row for row in status.splitlines() if row.startswith("VmHWM")).split()[1])
 
 
-def wait_for_sample(client: httpx.Client) -> None:
-    """Wait until the bundled photograph has come in; the service takes work before that."""
-    until = time.monotonic() + 60
-    while client.get(f"/api/v1/samples/{SAMPLE}").status_code != 200:
-        if time.monotonic() > until:
-            raise RuntimeError(f"The bundled sample {SAMPLE} did not come in.")
-        time.sleep(0.05)
-
-
 def main() -> None:
     """Print the table."""
     settings = Settings()
@@ -175,7 +155,7 @@ def main() -> None:
         starts = []
         for _ in range(2):
             with served(directory) as service:
-                wait_for_sample(service.client)
+                service.wait_for_sample(SAMPLE)
                 starts.append(service.seconds_to_ready)
         line("cold start to /readyz, empty data directory", starts[0], "s", 5)
         line("cold start to /readyz, again", starts[1], "s", 5)
@@ -183,7 +163,7 @@ def main() -> None:
             photo = directory / "sample.png"
             photo.write_bytes(service.client.get(f"/api/v1/samples/{SAMPLE}/image").raise_for_status().content)
             for seed in range(2 * settings.workers):
-                finish(service.client, 100 + seed)
+                service.finish(body(100 + seed))
             overhead(service, photo, settings.threads)
             throughput(service, photo, settings)
             pages(service)
