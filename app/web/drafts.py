@@ -14,6 +14,7 @@ from app.methods.registry import METHODS
 from app.web.forms import SHARED, form_name, parse
 
 CROP = ("crop.x", "crop.y", "crop.width", "crop.height")
+START = 512  # pixels of a side of the first crop, at most
 SIZES = {
     "1": "the crop’s",
     "1.5": "crop × 1.5",
@@ -39,14 +40,14 @@ def opened(sample: Sample, suggested: Rectangle | None, query: Mapping[str, str]
     ----------
     sample : Sample
     suggested : Rectangle or None
-        The crop to start from; None starts from the whole sample.
+        The crop to start from; None starts from the sample's middle.
     query : mapping
         ``crop`` as ``x,y,width,height``, ``method``, ``size``, and the method's parameters by their own names.
     """
     values = {"method": query.get("method", "")}
     if values["method"] not in METHODS:
         values["method"] = next(iter(METHODS))
-    crop = suggested or Rectangle(0, 0, sample.width, sample.height)
+    crop = suggested or _start(sample)
     with suppress(InvalidInputError):  # an address typed wrongly opens the form as if it had not been said
         crop = Rectangle.parse(query["crop"]).within(sample.width, sample.height) if "crop" in query else crop
     values |= dict(zip(CROP, str(crop).split(","), strict=True))
@@ -110,6 +111,12 @@ def refused(draft: Draft, method: Method, error: AppError) -> Draft:
     else:
         name = dotted if dotted in draft.values else ""
     return Draft(draft.values, {name: error.message})
+
+
+def _start(sample: Sample) -> Rectangle:
+    """Start from the middle of a large photograph, which is rarely one texture as a whole."""
+    width, height = min(sample.width, START), min(sample.height, START)
+    return Rectangle((sample.width - width) // 2, (sample.height - height) // 2, width, height)
 
 
 def _crop(sample: Sample, values: Mapping[str, str], errors: dict[str, str]) -> Rectangle | None:

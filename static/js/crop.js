@@ -80,7 +80,8 @@ frame.addEventListener("pointerdown", (event) => {
   if (event.button !== 0 || drag) return;
   event.preventDefault();
   const edge = event.target.dataset?.edge;
-  const kind = edge ? "resize" : event.target === box ? "move" : "draw";
+  const everything = shown.width === size.width && shown.height === size.height; // cannot be moved: a drag draws anew
+  const kind = edge ? "resize" : event.target === box && !everything ? "move" : "draw";
   drag = { kind, edge, id: event.pointerId, from: at(event), screen: [event.clientX, event.clientY], before: shown, under: false };
   frame.setPointerCapture(event.pointerId);
   box.focus({ preventScroll: true });

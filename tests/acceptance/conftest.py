@@ -1,0 +1,212 @@
+"""A real server process with its data in a temporary directory, and a real browser that notes every complaint of a page."""
+
+import base64
+import json
+import os
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import httpx
+import numpy as np
+import pytest
+from PIL import Image
+from playwright.sync_api import Browser, BrowserContext, Page, Playwright, sync_playwright
+
+ROOT = Path(__file__).resolve().parents[2]
+SAMPLES = ROOT / "samples"
+SCREENSHOTS = Path(__file__).parent / "screenshots"
+PATIENCE = 30.0
+CHROMIUM = os.environ.get("CHROMIUM", "/usr/bin/chromium")
+ARGUMENTS = [
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    for item in items:
+        if Path(__file__).parent in item.path.parents:
+            item.add_marker(pytest.mark.acceptance)
+
+
+def until(condition: Callable[[], Any], what: str) -> Any:
+    """Wait for a condition of the outside world; give back what it gave."""
+    deadline = time.monotonic() + PATIENCE
+    pause = 0.02
+    while time.monotonic() < deadline:
+        if found := condition():
+            return found
+        time.sleep(pause)
+        pause = min(2 * pause, 0.2)
+    raise AssertionError(f"waited {PATIENCE:.0f} s for {what}")
+
+
+@dataclass
+class Site:
+    """The served application and a client of its API."""
+
+    url: str
+    client: httpx.Client = field(repr=False)
+
+    def run(self, sample: str, crop: tuple[int, int, int, int], method: str = "rpn", **parameters: Any) -> dict[str, Any]:
+        """Run an experiment to its end; its record."""
+        x, y, width, height = crop
+        source = {"sample": sample, "crop": {"x": x, "y": y, "width": width, "height": height}}
+        answer = self.client.post(
+            "/api/v1/experiments",
+            json={"method": method, "inputs": [source], "parameters": parameters},
+            headers={"Prefer": "wait=30"},
+        )
+        assert answer.status_code == 201, answer.text
+        return dict(answer.json())
+
+
+def _responds(client: httpx.Client, path: str) -> httpx.Response | None:
+    try:
+        answer = client.get(path)
+    except httpx.TransportError:
+        return None
+    return answer if answer.status_code == 200 else None
+
+
+@pytest.fixture(scope="session")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
+    directory = tmp_path_factory.mktemp("acceptance")
+    with socket.create_server(("127.0.0.1", 0)) as reserved:
+        port = reserved.getsockname()[1]
+    environment = {**os.environ, "MICROTEXTURE_DATA_DIR": str(directory / "data"), "MICROTEXTURE_WORKERS": "2"}
+    command = [str(Path(sys.executable).parent / "microtexture"), "serve", "--port", str(port)]
+    log = (directory / "server.log").open("w")
+    process = subprocess.Popen(command, cwd=ROOT, env=environment, stdout=log, stderr=subprocess.STDOUT)
+    catalogue = json.loads((SAMPLES / "catalogue.json").read_text())
+    try:
+        with httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=PATIENCE + 5) as client:
+            until(lambda: process.poll() is not None or _responds(client, "/readyz"), "a server that is ready")
+            assert process.poll() is None, (directory / "server.log").read_text()
+            until(
+                lambda: len(client.get("/api/v1/samples").json()["samples"]) == len(catalogue), "the bundled samples"
+            )
+            yield Site(f"http://127.0.0.1:{port}", client)
+    finally:
+        process.terminate()
+        process.wait(PATIENCE)
+        log.close()
+
+
+@pytest.fixture(scope="session")
+def experiment(site: Site) -> dict[str, Any]:
+    """A finished RPN of rippled sand, half as large again as its crop."""
+    return site.run("sand_desert009", (256, 256, 256, 192), width=384, height=288, seed=7)
+
+
+@pytest.fixture(scope="session")
+def playwright() -> Iterator[Playwright]:
+    with sync_playwright() as started:
+        yield started
+
+
+@pytest.fixture(scope="session")
+def browser(playwright: Playwright) -> Iterator[Browser]:
+    browser = playwright.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
+    yield browser
+    browser.close()
+
+
+@dataclass
+class Visitors:
+    """Opens pages; ``complaints`` are the errors that browsers logged on them, those of Content-Security-Policy among them."""
+
+    browser: Browser
+    url: str
+    complaints: list[str] = field(default_factory=list)
+    contexts: list[BrowserContext] = field(default_factory=list)
+    refusals_expected: bool = False
+
+    def visit(self, path: str = "/", **options: Any) -> Page:
+        options = {"viewport": {"width": 1440, "height": 900}, "base_url": self.url, **options}
+        context = self.browser.new_context(**options)
+        context.set_default_timeout(PATIENCE * 1000)
+        self.contexts.append(context)
+        page = context.new_page()
+        page.on("console", lambda message: self._note(message.type, message.text))
+        page.on("pageerror", lambda error: self.complaints.append(str(error)))
+        page.goto(path)
+        return page
+
+    def _note(self, kind: str, text: str) -> None:
+        refusal = text.startswith("Failed to load resource: the server responded with a status of 4")
+        if kind in {"error", "warning"} and not (refusal and self.refusals_expected):
+            self.complaints.append(text)
+
+
+@pytest.fixture
+def visitors(browser: Browser, site: Site) -> Iterator[Visitors]:
+    """Whatever a test does, no page may log an error while it does it."""
+    visitors = Visitors(browser, site.url)
+    yield visitors
+    for context in visitors.contexts:
+        context.close()
+    assert visitors.complaints == []
+
+
+def shown_pixels(page: Page, selector: str) -> np.ndarray:
+    """The pixels (H, W, 3) uint8 of a picture as the browser decoded it."""
+    page.wait_for_function(
+        "selector => { const i = document.querySelector(selector); return i && i.complete && i.naturalWidth > 0; }",
+        arg=selector,
+    )
+    address = page.evaluate(
+        """selector => {
+            const image = document.querySelector(selector);
+            const canvas = new OffscreenCanvas(image.naturalWidth, image.naturalHeight);
+            canvas.getContext("2d").drawImage(image, 0, 0);
+            return canvas.convertToBlob({type: "image/png"}).then(blob => new Promise(done => {
+                const reader = new FileReader();
+                reader.onload = () => done(reader.result);
+                reader.readAsDataURL(blob);
+            }));
+        }""",
+        selector,
+    )
+    data = base64.b64decode(address.partition(",")[2])
+    return np.asarray(Image.open(BytesIO(data)).convert("RGB"))
+
+
+@pytest.fixture(scope="session", name="shown_pixels")
+def shown_pixels_fixture() -> Callable[[Page, str], np.ndarray]:
+    return shown_pixels
+
+
+@pytest.fixture(scope="session", name="until")
+def until_fixture() -> Callable[..., Any]:
+    return until
+
+
+@pytest.fixture(scope="session")
+def photograph() -> Path:
+    """What a visitor uploads: 1024 × 1024 pixels of soil."""
+    return SAMPLES / "soil_ground010.png"
+
+
+@pytest.fixture
+def screenshot() -> Callable[[Page, str], None]:
+    """Leave a picture of the page for a person to look at."""
+
+    def take(page: Page, name: str, *, full_page: bool = True) -> None:
+        SCREENSHOTS.mkdir(exist_ok=True)
+        page.screenshot(path=SCREENSHOTS / f"{name}.png", full_page=full_page)
+
+    return take
