@@ -107,8 +107,7 @@ class InlineExecutor:
                 waiting = list(self._queue)
             self._tell(job, *waiting)
             failure = self._failure_of(job)
-            if self._open or failure is None:
-                assert self._ended is not None
+            if self._open and self._ended is not None:
                 self._ended(job, failure)
             with self._changed:
                 self._current = None

@@ -1,4 +1,4 @@
-"""The files of an experiment while they are made: the method's pictures, and small ones for lists and link previews."""
+"""The files of an experiment while they are made: the method's pictures, and thumbnails of them for lists."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import imagecodecs
 import numpy as np
 
-from app.images.convert import PREVIEW, pair, thumbnails
+from app.images.convert import thumbnails
 from app.images.png import Pixels
 from app.methods.model import Picture, Source
 
@@ -29,7 +29,7 @@ def of_picture(picture: Picture) -> File:
 
 
 def with_hidden(source: Source, pictures: Iterable[Picture]) -> Iterator[File]:
-    """The method's pictures; after the texture both thumbnails, at one scale, and the pair as a preview."""
+    """The method's pictures; after the texture the thumbnails of crop and texture, at one scale."""
     for picture in pictures:
         yield of_picture(picture)
         if picture.name == "texture":
@@ -37,4 +37,3 @@ def with_hidden(source: Source, pictures: Iterable[Picture]) -> Iterator[File]:
             texture = imagecodecs.png_decode(picture.png)
             for name, data in zip(("crop", "texture"), thumbnails(crop, texture), strict=True):
                 yield File(f".thumbnail-{name}", f"Thumbnail of the {name}", "image/webp", 0, 0, data)
-            yield File(".preview", "Preview", "image/jpeg", *PREVIEW, pair(crop, texture))

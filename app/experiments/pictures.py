@@ -1,15 +1,17 @@
 """Files made from stored ones and cached: what a browser shows of a sample, and downloads in other formats."""
 
+import hashlib
 from pathlib import Path
 
 from app.errors import InvalidInputError
 from app.experiments.cache import FileCache
 from app.experiments.model import Output, Sample
 from app.experiments.ports import BlobStore
-from app.images.convert import Format, convert, rendition
+from app.images.convert import PREVIEW, Format, convert, pair, rendition
 
 DEEP_FORMATS = ("png", "tiff")
 SIZES = (256, 512, 1024, 2048)
+PREVIEW_NAME = ".preview"
 PNG = "image/png"
 
 
@@ -37,6 +39,13 @@ class Pictures:
         if output.media_type == media_type:
             return stored, media_type
         return self._cache.get(f"{output.digest}.{file_format}", lambda: convert(stored, file_format)[0]), media_type
+
+    def preview(self, crop: Output, texture: Output) -> tuple[Output, Path]:
+        """The pair of pictures that stands for an experiment elsewhere; made when first asked for."""
+        stored = self._blobs.path(crop.digest), self._blobs.path(texture.digest)
+        path = self._cache.get(f"{texture.digest}-{crop.digest}.jpeg", lambda: pair(*stored))
+        digest = hashlib.sha256(f"{crop.digest} {texture.digest}".encode()).hexdigest()
+        return Output(PREVIEW_NAME, "Preview", "image/jpeg", *PREVIEW, path.stat().st_size, digest), path
 
     def check_deep(self, file_format: Format) -> None:
         """Raise `InvalidInputError` if files of this format have no 16 bits per channel."""

@@ -79,6 +79,4 @@ def greedy(directory: Path, name: str, progress: Progress) -> None:
         time.sleep(0.01)
 
 
-BEHAVIOURS = {
-    function.__name__: function for function in (quick, polite, stubborn, refused, broken, killed, greedy)
-}
+BEHAVIOURS = {function.__name__: function for function in (quick, polite, stubborn, refused, broken, killed, greedy)}

@@ -1,0 +1,325 @@
+"""What every experiment store promises, whatever database is below it."""
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+from itertools import count
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from app.errors import ConflictError, DeletedError, InvalidInputError, NotFoundError
+from app.experiments.model import Experiment, ExperimentInput, Output, Sample, Status
+from app.images.crop import Rectangle
+from app.store.sql import SqlStore
+
+START = datetime(2026, 3, 1, 12, 0, 0, 123456, tzinfo=UTC)
+NUMBERS = count()
+
+
+def a_sample(**values: object) -> Sample:
+    number = next(NUMBERS)
+    sample = Sample(f"sample{number}", f"{number:064x}", 640, 427, 3, 8, False, START)
+    return replace(sample, **values)
+
+
+def an_experiment(sample: Sample, **values: object) -> Experiment:
+    number = next(NUMBERS)
+    inputs = (ExperimentInput(sample.id, Rectangle(1, 2, 30, 40)),)
+    parameters = {"width": 64, "height": 32, "seed": 2**53 - 1, "alpha": 0.1, "window": "bump", "σ": None}
+    experiment = Experiment(f"experiment{number}", "rpn", inputs, parameters, True, "0wner", START)
+    return replace(experiment, **values)
+
+
+def an_output(name: str = "texture", **values: object) -> Output:
+    return replace(Output(name, "Texture", "image/png", 64, 32, 5 << 30, f"{next(NUMBERS):064x}"), **values)
+
+
+@pytest.fixture
+def sample(store: SqlStore) -> Sample:
+    sample = a_sample()
+    store.add_sample(sample)
+    return sample
+
+
+def succeeded(store: SqlStore, sample: Sample, **values: object) -> Experiment:
+    experiment = an_experiment(sample, **values)
+    store.add(experiment)
+    store.start(experiment.id)
+    store.succeed(experiment.id, [an_output(), an_output("crop"), an_output(".thumbnail-crop")], {"b": 0.5, "a": 0.25})
+    return store.get(experiment.id)
+
+
+def test_gives_samples_back_as_they_were(store: SqlStore) -> None:
+    sample = a_sample(transparent=True, channels=1, depth=16, title="Sand — fine", bundled=True)
+    store.add_sample(sample, owner="someone")
+    assert store.sample(sample.id) == sample
+    assert store.bundled_samples() == [sample]
+
+
+def test_gives_experiments_back_as_they_were(store: SqlStore, sample: Sample) -> None:
+    experiment = an_experiment(sample, listed=False, transient=True)
+    store.add(experiment)
+    assert store.get(experiment.id) == experiment
+
+
+def test_survives_reopening(store: SqlStore, sample: Sample, open_store: Callable[[], SqlStore]) -> None:
+    experiment = succeeded(store, sample)
+    assert open_store().get(experiment.id) == experiment
+
+
+@pytest.mark.parametrize("name", ["", "nothing", "with\0nul", "\ud800", "x" * 10_000])
+def test_says_that_it_does_not_know_a_name(store: SqlStore, name: str) -> None:
+    with pytest.raises(NotFoundError):
+        store.get(name)
+    with pytest.raises(NotFoundError):
+        store.sample(name)
+    assert store.page(limit=3, method=name).experiments == ()
+
+
+def test_refuses_an_experiment_of_a_sample_that_is_gone(store: SqlStore) -> None:
+    with pytest.raises(NotFoundError):
+        store.add(an_experiment(a_sample()))
+
+
+def test_refuses_the_same_identifier_twice(store: SqlStore, sample: Sample) -> None:
+    experiment = an_experiment(sample)
+    store.add(experiment)
+    with pytest.raises(ConflictError):
+        store.add(experiment)
+
+
+def test_success_is_recorded_with_its_outputs_in_order(store: SqlStore, sample: Sample) -> None:
+    experiment = succeeded(store, sample)
+    assert experiment.status is Status.SUCCEEDED
+    assert [output.name for output in experiment.outputs] == ["texture", "crop", ".thumbnail-crop"]
+    assert list(experiment.timings.items()) == [("b", 0.5), ("a", 0.25)]
+    assert experiment.outputs[0].bytes == 5 << 30
+    assert experiment.started_at is not None
+    assert experiment.finished_at is not None
+    assert experiment.attempts == 1
+
+
+def test_starting_again_counts_an_attempt_until_it_is_finished(store: SqlStore, sample: Sample) -> None:
+    experiment = an_experiment(sample)
+    store.add(experiment)
+    attempts = []
+    for _ in range(2):
+        started = store.start(experiment.id)
+        assert started is not None
+        attempts.append((started.status, started.attempts))
+    assert attempts == [(Status.RUNNING, 1), (Status.RUNNING, 2)]
+    assert store.succeed(experiment.id, [an_output()], {})
+    assert store.start(experiment.id) is None
+
+
+def test_the_first_end_is_the_one_that_counts(store: SqlStore, sample: Sample) -> None:
+    ends: dict[Status, Callable[[str], bool]] = {
+        Status.SUCCEEDED: lambda name: store.succeed(name, [an_output()], {}),
+        Status.FAILED: lambda name: store.fail(name, "too large"),
+        Status.CANCELLED: store.cancel,
+    }
+    for first, end in ends.items():
+        experiment = an_experiment(sample)
+        store.add(experiment)
+        store.start(experiment.id)
+        assert end(experiment.id)
+        recorded = store.get(experiment.id)
+        assert recorded.status is first
+        assert not any(other(experiment.id) for other in ends.values())
+        assert store.get(experiment.id) == recorded
+
+
+def test_only_a_running_experiment_succeeds(store: SqlStore, sample: Sample) -> None:
+    experiment = an_experiment(sample)
+    store.add(experiment)
+    assert not store.succeed(experiment.id, [an_output()], {})
+    assert store.get(experiment.id) == experiment
+
+
+def test_what_waits_can_fail_and_be_cancelled(store: SqlStore, sample: Sample) -> None:
+    failing, cancelled = an_experiment(sample), an_experiment(sample)
+    for experiment in (failing, cancelled):
+        store.add(experiment)
+    assert store.fail(failing.id, "a reason")
+    assert store.cancel(cancelled.id)
+    assert store.get(failing.id).error == "a reason"
+    assert store.counts() == {"queued": 0, "running": 0, "succeeded": 0, "failed": 1, "cancelled": 1}
+
+
+def test_names_the_unfinished_oldest_first(store: SqlStore, sample: Sample) -> None:
+    ages = [3, 1, 2, 5, 4]
+    made = {age: an_experiment(sample, created_at=START - timedelta(days=age)) for age in ages}
+    for experiment in made.values():
+        store.add(experiment)
+    store.add(an_experiment(sample, transient=True))
+    store.start(made[2].id)
+    store.cancel(made[4].id)
+    assert store.unfinished() == [made[age].id for age in (5, 3, 2, 1)]
+
+
+def test_an_output_can_be_added_and_replaced(store: SqlStore, sample: Sample) -> None:
+    experiment = succeeded(store, sample)
+    for output in (an_output(".texture-16"), an_output(".texture-16")):
+        store.add_output(experiment.id, output)
+        assert store.get(experiment.id).outputs == (*experiment.outputs, output)
+
+
+def test_an_unfinished_experiment_takes_no_output(store: SqlStore, sample: Sample) -> None:
+    experiment = an_experiment(sample)
+    store.add(experiment)
+    with pytest.raises(ConflictError):
+        store.add_output(experiment.id, an_output())
+
+
+def test_listing_can_be_changed(store: SqlStore, sample: Sample) -> None:
+    experiment = succeeded(store, sample)
+    store.set_listed(experiment.id, False)
+    assert not store.get(experiment.id).listed
+    assert store.page(limit=5).experiments == ()
+    store.set_listed(experiment.id, True)
+    assert [found.id for found in store.page(limit=5).experiments] == [experiment.id]
+    with pytest.raises(NotFoundError):
+        store.set_listed("nothing", True)
+
+
+def test_a_deleted_experiment_leaves_a_tombstone_and_nothing_else(store: SqlStore, sample: Sample) -> None:
+    experiment = succeeded(store, sample)
+    digests = {output.digest for output in experiment.outputs}
+    assert store.used(digests) == digests
+    for _ in range(2):
+        store.delete(experiment.id)
+    with pytest.raises(DeletedError):
+        store.get(experiment.id)
+    assert store.used(digests) == set()
+    assert store.page(limit=5).experiments == ()
+    assert store.start(experiment.id) is None
+    assert not store.succeed(experiment.id, [an_output()], {})
+
+
+def test_a_transient_experiment_leaves_no_tombstone(store: SqlStore, sample: Sample) -> None:
+    experiment = an_experiment(sample, transient=True)
+    store.add(experiment)
+    assert store.transient_before(START + timedelta(seconds=1)) == [experiment.id]
+    store.delete(experiment.id)
+    with pytest.raises(NotFoundError):
+        store.get(experiment.id)
+
+
+def test_only_unused_old_uploads_are_removed(store: SqlStore, sample: Sample) -> None:
+    unused, other, young = a_sample(), a_sample(), a_sample(created_at=START + timedelta(days=2))
+    bundled = a_sample(title="Sand", bundled=True)
+    for each in (unused, other, young, bundled):
+        store.add_sample(each)
+    experiment = an_experiment(sample)
+    store.add(experiment)
+    later = START + timedelta(days=1)
+    assert store.remove_unused_samples(later, [sample.id, unused.id]) == [unused]
+    assert store.remove_unused_samples(later) == [other]
+    store.delete(experiment.id)
+    assert store.remove_unused_samples(later) == [sample]
+    assert store.used([unused.digest, sample.digest, young.digest, bundled.digest]) == {young.digest, bundled.digest}
+
+
+def test_a_sample_is_never_lost_to_a_new_experiment(store: SqlStore, open_store: Callable[[], SqlStore]) -> None:
+    """Removing unused samples while experiments of them are added: whichever comes first, both agree."""
+    other = open_store()
+    samples = [a_sample() for _ in range(20)]
+    for sample in samples:
+        store.add_sample(sample)
+
+    def adding(sample: Sample) -> bool:
+        try:
+            other.add(an_experiment(sample))
+        except NotFoundError:
+            return False
+        return True
+
+    with ThreadPoolExecutor(2) as pool:
+        removing = pool.submit(store.remove_unused_samples, START + timedelta(days=1))
+        added = list(pool.map(adding, reversed(samples)))
+        removed = {sample.id for sample in removing.result()}
+    assert {sample.id for sample, kept in zip(reversed(samples), added, strict=True) if not kept} == removed
+
+
+def test_several_processes_may_make_the_schema_at_once(store_url: str) -> None:
+    with ThreadPoolExecutor(6) as pool:
+        stores = list(pool.map(lambda _: SqlStore(store_url), range(6)))
+    for each in stores:
+        each.add_sample(a_sample())
+        each.close()
+
+
+def test_writers_wait_for_one_another(store: SqlStore, sample: Sample, open_store: Callable[[], SqlStore]) -> None:
+    experiments = [an_experiment(sample) for _ in range(40)]
+    stores = [store, open_store()]
+
+    def whole_life(number: int) -> bool:
+        mine = stores[number % 2]
+        mine.add(experiments[number])
+        mine.start(experiments[number].id)
+        return mine.succeed(experiments[number].id, [an_output()], {})
+
+    with ThreadPoolExecutor(4) as pool:
+        assert all(pool.map(whole_life, range(40)))
+    assert store.counts()["succeeded"] == 40
+
+
+def test_one_of_two_simultaneous_ends_wins(store: SqlStore, sample: Sample, open_store: Callable[[], SqlStore]) -> None:
+    other = open_store()
+    for _ in range(10):
+        experiment = an_experiment(sample)
+        store.add(experiment)
+        store.start(experiment.id)
+        with ThreadPoolExecutor(2) as pool:
+            success = pool.submit(store.succeed, experiment.id, [an_output()], {})
+            cancel = pool.submit(other.cancel, experiment.id)
+            assert success.result() != cancel.result()
+        recorded = store.get(experiment.id)
+        assert (recorded.status is Status.SUCCEEDED) == success.result() == bool(recorded.outputs)
+
+
+@settings(max_examples=15, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(ages=st.lists(st.integers(0, 4), max_size=12), limit=st.integers(1, 5))
+def test_paging_shows_every_experiment_once_newest_first(store: SqlStore, ages: list[int], limit: int) -> None:
+    for experiment in store.page(limit=100).experiments:
+        store.delete(experiment.id)
+    sample = a_sample()
+    store.add_sample(sample)
+    made = [succeeded(store, sample, created_at=START + timedelta(microseconds=age)) for age in ages]
+    store.add(an_experiment(sample))
+    succeeded(store, sample, listed=False)
+    seen: list[Experiment] = []
+    cursor = None
+    while True:
+        page = store.page(limit=limit, cursor=cursor)
+        seen += page.experiments
+        assert len(page.experiments) <= limit
+        cursor = page.cursor
+        if cursor is None:
+            break
+        assert len(page.experiments) == limit
+    assert sorted(each.id for each in seen) == sorted(each.id for each in made)
+    assert [each.created_at for each in seen] == sorted((each.created_at for each in made), reverse=True)
+
+
+def test_pages_can_be_of_one_method(store: SqlStore, sample: Sample) -> None:
+    adsn = succeeded(store, sample, method="adsn")
+    succeeded(store, sample)
+    assert [each.id for each in store.page(limit=5, method="adsn").experiments] == [adsn.id]
+
+
+@pytest.mark.parametrize("cursor", ["", "nonsense", "AAAA", "OTk5OTk5OTk5OTk5OTk5OTk5OTk5LmE", "é", "MS4A", "\ud800"])
+def test_a_cursor_of_nobody_is_refused(store: SqlStore, cursor: str) -> None:
+    with pytest.raises(InvalidInputError):
+        store.page(limit=5, cursor=cursor)
+
+
+def test_finds_what_finished_before_a_moment(store: SqlStore, sample: Sample) -> None:
+    before = datetime.now(UTC)
+    experiment = succeeded(store, sample)
+    store.add(an_experiment(sample))
+    assert store.finished_before(before) == []
+    assert store.finished_before(datetime.now(UTC) + timedelta(seconds=1)) == [experiment.id]
