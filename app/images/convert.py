@@ -124,7 +124,7 @@ def _decoded(picture: bytes | Path | Pixels) -> Pixels:
 
 def _with_depth(array: Pixels, depth: int | None) -> Pixels:
     if depth == 8 and array.dtype == np.uint16:
-        # v / 257, rounded (0.2 % of the values, almost halfway, go the other way), without a wider type: these arrays are large.
+        # v / 257, rounded (0.2 % of the values, almost halfway, go the other way), without a wider type.
         narrowed = array - (array >> 8)
         narrowed += 128
         narrowed >>= 8

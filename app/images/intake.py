@@ -15,7 +15,7 @@ from app.errors import AppError, BrokenFileError, BusyError, TooLargeError, Unsu
 from app.images import decode_server
 from app.images.decode import Limits
 
-AT_ONCE = 2
+AT_ONCE = max(2, os.cpu_count() or 2)
 WAIT_SECONDS = 60.0
 GRACE_SECONDS = 10.0  # the server kills its children itself; this much later it must be hung
 ROOT = Path(__file__).resolve().parents[2]

@@ -96,10 +96,12 @@ def _inflates_to(pieces: list[bytes], size: int) -> bool:
     inflater, total = isal_zlib.decompressobj(), 0
     try:
         for piece in pieces:
-            waiting = piece
-            while waiting and total <= size:
-                total += len(inflater.decompress(waiting, PIECE))
+            waiting, inflated = piece, PIECE
+            # A full piece may have left more behind in the inflater, even if it took all its input.
+            while (waiting or inflated == PIECE) and total <= size:
+                inflated = len(inflater.decompress(waiting, PIECE))
                 waiting = inflater.unconsumed_tail
+                total += inflated
     except isal_zlib.IsalError:  # type: ignore[misc]  # its stub declares an instance
         return False
     return bool(inflater.eof) and total == size

@@ -1,0 +1,263 @@
+"""Uploads: every kind of the four formats is read at full depth, upright and in sRGB."""
+
+import io
+from collections.abc import Callable
+from typing import Any
+
+import imagecodecs
+import numpy as np
+import pytest
+import tifffile
+from numpy.typing import NDArray
+from PIL import Image, ImageOps
+
+from app.images.decode import Decoded, to_png
+
+Read = Callable[..., Decoded]
+Noise = Callable[..., NDArray[Any]]
+ORIENTATION = 0x0112
+D65 = (0.3127, 0.3290, 1.0)
+LINEAR = imagecodecs.cms_profile(
+    "rgb", gamma=1.0, whitepoint=D65, primaries=[0.64, 0.33, 1, 0.30, 0.60, 1, 0.15, 0.06, 1]
+)
+
+
+def saved(image: Image.Image, file_format: str, **options: Any) -> bytes:
+    file = io.BytesIO()
+    image.save(file, file_format, **options)
+    return file.getvalue()
+
+
+def as_tiff(pixels: NDArray[Any], **options: Any) -> bytes:
+    file = io.BytesIO()
+    tifffile.imwrite(file, pixels, **options)
+    return file.getvalue()
+
+
+def oriented(orientation: int) -> Image.Exif:
+    exif = Image.Exif()
+    exif[ORIENTATION] = orientation
+    return exif
+
+
+def srgb_of_linear(light: NDArray[Any]) -> NDArray[np.float64]:
+    """IEC 61966-2-1, of values from 0 to 1."""
+    return np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
+
+
+@pytest.mark.parametrize("mode", ["1", "L", "LA", "P", "RGB", "RGBA"])
+def test_every_kind_of_png_has_the_pixels_that_pillow_sees(read: Read, noise: Noise, mode: str) -> None:
+    image = Image.fromarray(noise(21, 34, 4))
+    image = image.convert("RGB").quantize(50) if mode == "P" else image.convert(mode)
+    picture = read(saved(image, "png"))
+    grey = mode in ("1", "L", "LA")
+    expected = np.asarray(image.convert("L" if grey else "RGB"))
+    np.testing.assert_array_equal(picture.pixels, expected[..., None] if grey else expected)
+    if mode in ("LA", "RGBA"):
+        np.testing.assert_array_equal(picture.alpha, np.asarray(image.getchannel("A")))
+    else:
+        assert picture.alpha is None
+
+
+def test_a_large_flat_png_is_read(read: Read, png_saying: Callable[..., bytes]) -> None:
+    picture = read(png_saying(3000, 3000, 8, 2, bytes(3000 * 9001)))
+    assert picture.pixels.shape == (3000, 3000, 3)
+    assert not picture.pixels.any()
+
+
+def test_palette_and_colour_key_transparency_become_an_alpha_channel(read: Read, noise: Noise) -> None:
+    image = Image.fromarray(noise(9, 12, 3)).quantize(8)
+    for source in (image, image.convert("RGB"), image.convert("L")):
+        key = 3 if source.mode == "P" else source.getpixel((0, 0))
+        data = saved(source, "png", transparency=key)
+        with Image.open(io.BytesIO(data)) as seen:
+            expected = np.asarray(seen.convert("RGBA"))[..., 3]
+        np.testing.assert_array_equal(read(data).alpha, expected)
+
+
+@pytest.mark.parametrize("bits", [2, 4])
+def test_grey_of_few_bits_spreads_over_the_whole_range(read: Read, png_saying: Callable[..., bytes], bits: int) -> None:
+    shades = 2**bits
+    packed = bytes(
+        int("".join(f"{value:0{bits}b}" for value in range(i, i + 8 // bits)), 2) for i in range(0, shades, 8 // bits)
+    )
+    picture = read(png_saying(shades, 1, bits, 0, b"\0" + packed))
+    np.testing.assert_array_equal(picture.pixels[0, :, 0], np.arange(shades) * 255 // (shades - 1))
+
+
+@pytest.mark.parametrize("shape", [(13, 17), (1, 1), (3, 2), (8, 8)])
+def test_an_interlaced_png_is_put_together(
+    read: Read, noise: Noise, png_saying: Callable[..., bytes], shape: tuple[int, int]
+) -> None:
+    pixels = noise(*shape, 3)
+    rows = b""
+    for x, y, dx, dy in [
+        (0, 0, 8, 8),
+        (4, 0, 8, 8),
+        (0, 4, 4, 8),
+        (2, 0, 4, 4),
+        (0, 2, 2, 4),
+        (1, 0, 2, 2),
+        (0, 1, 1, 2),
+    ]:
+        if (part := pixels[y::dy, x::dx]).size:
+            rows += b"".join(b"\0" + row.tobytes() for row in part)
+    np.testing.assert_array_equal(read(png_saying(shape[1], shape[0], 8, 2, rows, 1)).pixels, pixels)
+
+
+@pytest.mark.parametrize("channels", [1, 2, 3, 4])
+def test_sixteen_bits_of_a_png_stay_sixteen_bits(read: Read, noise: Noise, channels: int) -> None:
+    pixels = noise(15, 22, channels, dtype=np.uint16)
+    picture = read(imagecodecs.png_encode(pixels))
+    colours = channels - 1 + channels % 2
+    assert picture.depth == 16
+    np.testing.assert_array_equal(picture.pixels, pixels[..., :colours])
+    if channels in (2, 4):
+        np.testing.assert_array_equal(picture.alpha, pixels[..., -1])
+
+
+@pytest.mark.parametrize("options", [{}, {"progressive": True}, {"subsampling": 2}, {"optimize": True}])
+@pytest.mark.parametrize("mode", ["L", "RGB"])
+def test_a_jpeg_is_what_pillow_decodes(
+    read: Read, photograph: NDArray[np.uint8], mode: str, options: dict[str, Any]
+) -> None:
+    data = saved(Image.fromarray(photograph).convert(mode), "jpeg", **options)
+    with Image.open(io.BytesIO(data)) as image:
+        np.testing.assert_array_equal(read(data).pixels.squeeze(), np.asarray(image))
+
+
+def test_a_cmyk_jpeg_without_a_profile_shows_its_inks(read: Read) -> None:
+    inks = np.zeros((32, 32, 4), np.uint8)
+    inks[:16, :16, 0] = 255  # cyan
+    inks[16:, 16:, 3] = 255  # black
+    picture = read(saved(Image.fromarray(inks, "CMYK"), "jpeg", quality=100, subsampling=0))
+    for place, colour in (((4, 4), (0, 255, 255)), ((28, 28), (0, 0, 0)), ((4, 28), (255, 255, 255))):
+        np.testing.assert_allclose(picture.pixels[place].astype(int), colour, atol=3)
+
+
+def test_a_phone_s_jpeg_with_a_second_picture_gives_the_first(read: Read, photograph: NDArray[np.uint8]) -> None:
+    first, second = Image.fromarray(photograph), Image.fromarray(photograph[::-1].copy())
+    data = saved(first, "mpo", save_all=True, append_images=[second], quality=95)
+    assert abs(read(data).pixels.astype(int) - photograph).mean() < 4
+
+
+def test_webp_is_read_with_and_without_transparency(read: Read, noise: Noise) -> None:
+    pixels = noise(20, 30, 4)
+    picture = read(saved(Image.fromarray(pixels), "webp", lossless=True, exact=True))
+    np.testing.assert_array_equal(picture.pixels, pixels[..., :3])
+    np.testing.assert_array_equal(picture.alpha, pixels[..., 3])
+    opaque = read(saved(Image.fromarray(pixels[..., :3]), "webp", lossless=True))
+    np.testing.assert_array_equal(opaque.pixels, pixels[..., :3])
+    assert opaque.alpha is None
+
+
+def test_lossy_webp_looks_like_its_source(read: Read, photograph: NDArray[np.uint8]) -> None:
+    picture = read(saved(Image.fromarray(photograph), "webp", quality=95))
+    assert abs(picture.pixels.astype(int) - photograph).mean() < 4
+
+
+@pytest.mark.parametrize("file_format", ["webp", "png"])
+def test_of_an_animation_the_first_picture_is_taken(read: Read, noise: Noise, file_format: str) -> None:
+    frames = [Image.fromarray(noise(16, 16, 3, seed=seed)) for seed in range(3)]
+    data = saved(frames[0], file_format, save_all=True, append_images=frames[1:], lossless=True)
+    np.testing.assert_array_equal(read(data).pixels, np.asarray(frames[0]))
+
+
+@pytest.mark.parametrize("lowest", [255, 254])
+def test_an_alpha_channel_that_is_opaque_is_dropped(read: Read, noise: Noise, lowest: int) -> None:
+    pixels = noise(8, 8, 4)
+    pixels[..., 3] = 255
+    pixels[3, 3, 3] = lowest
+    assert read(saved(Image.fromarray(pixels), "png")).alpha is None
+
+
+@pytest.mark.parametrize("orientation", range(1, 9))
+@pytest.mark.parametrize("file_format", ["jpeg", "png", "webp", "tiff"])
+def test_the_picture_stands_as_its_orientation_says(
+    read: Read, photograph: NDArray[np.uint8], file_format: str, orientation: int
+) -> None:
+    image = Image.fromarray(photograph)
+    options = {"lossless": True} if file_format == "webp" else {"quality": 95} if file_format == "jpeg" else {}
+    data = saved(image, file_format, exif=oriented(orientation), **options)
+    with Image.open(io.BytesIO(data)) as seen:
+        expected = np.asarray(ImageOps.exif_transpose(seen))
+    np.testing.assert_array_equal(read(data).pixels, expected)
+
+
+def test_transparency_turns_with_the_picture(read: Read, noise: Noise) -> None:
+    pixels = noise(5, 9, 4)
+    picture = read(saved(Image.fromarray(pixels), "png", exif=oriented(6)))
+    np.testing.assert_array_equal(picture.alpha, np.rot90(pixels[..., 3], -1))
+
+
+def test_an_impossible_orientation_is_ignored(read: Read, photograph: NDArray[np.uint8]) -> None:
+    picture = read(saved(Image.fromarray(photograph), "png", exif=oriented(77)))
+    np.testing.assert_array_equal(picture.pixels, photograph)
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
+@pytest.mark.parametrize("channels", [1, 3])
+def test_a_linear_profile_is_converted_to_srgb_at_full_depth(
+    read: Read, noise: Noise, dtype: type, channels: int
+) -> None:
+    peak = np.iinfo(dtype).max
+    pixels = noise(16, 24, channels, dtype=dtype)
+    pixels[0, 0] = 0
+    pixels[0, 1] = peak
+    profile = imagecodecs.cms_profile("gray", gamma=1.0) if channels == 1 else LINEAR
+    picture = read(as_tiff(pixels, photometric="minisblack" if channels == 1 else "rgb", iccprofile=profile))
+    assert picture.pixels.dtype == dtype
+    # One step of 8 bits; of 16 bits a few, for profiles hold their numbers in 16 bits themselves.
+    expected = srgb_of_linear(pixels / peak) * peak
+    assert abs(picture.pixels - expected).max() <= (1 if dtype == np.uint8 else 8)
+
+
+def test_a_wide_profile_is_converted_as_the_exact_transform_does(read: Read, noise: Noise) -> None:
+    wide = imagecodecs.cms_profile(
+        "rgb", gamma=2.2, whitepoint=D65, primaries=[0.64, 0.33, 1, 0.21, 0.71, 1, 0.15, 0.06, 1]
+    )
+    pixels = noise(64, 64, 3, dtype=np.uint16)
+    exact = imagecodecs.cms_transform(
+        pixels,
+        wide,
+        imagecodecs.cms_profile("srgb"),
+        colorspace="rgb",
+        outcolorspace="rgb",
+        flags=imagecodecs.CMS.FLAGS.NOOPTIMIZE,
+    )
+    picture = read(as_tiff(pixels, photometric="rgb", iccprofile=wide))
+    assert abs(picture.pixels.astype(int) - exact).max() <= 8
+
+
+def test_a_profile_of_srgb_changes_nothing(read: Read, noise: Noise) -> None:
+    pixels = noise(32, 32, 3)
+    data = saved(Image.fromarray(pixels), "png", icc_profile=imagecodecs.cms_profile("srgb"))
+    assert abs(read(data).pixels.astype(int) - pixels).max() <= 1
+
+
+@pytest.mark.parametrize("file_format", ["png", "jpeg", "webp"])
+def test_profiles_are_found_in_every_format(read: Read, file_format: str) -> None:
+    image = Image.new("RGB", (16, 16), (55, 55, 55))
+    data = saved(image, file_format, icc_profile=LINEAR, quality=100)
+    expected = srgb_of_linear(np.array(55 / 255)) * 255
+    np.testing.assert_allclose(read(data).pixels.mean(), expected, atol=2)
+
+
+@pytest.mark.parametrize("profile", [b"broken", b"\0" * 500, imagecodecs.cms_profile("gray")])
+def test_a_broken_or_foreign_profile_is_ignored(read: Read, noise: Noise, profile: bytes) -> None:
+    pixels = noise(8, 8, 3)
+    np.testing.assert_array_equal(read(saved(Image.fromarray(pixels), "png", icc_profile=profile)).pixels, pixels)
+
+
+def test_a_profile_leaves_transparency_alone(read: Read, noise: Noise) -> None:
+    pixels = noise(8, 8, 4)
+    data = saved(Image.fromarray(pixels), "png", icc_profile=LINEAR)
+    np.testing.assert_array_equal(read(data).alpha, pixels[..., 3])
+
+
+def test_what_is_written_is_what_was_decoded(read: Read, noise: Noise) -> None:
+    for channels, dtype in ((1, np.uint8), (2, np.uint16), (3, np.uint16), (4, np.uint8)):
+        picture = read(imagecodecs.png_encode(noise(70, 50, channels, dtype=dtype)))
+        again = read(to_png(picture))
+        np.testing.assert_array_equal(again.pixels, picture.pixels)
+        np.testing.assert_array_equal(again.alpha, picture.alpha)
