@@ -32,11 +32,12 @@ ENV PATH=/opt/microtexture/bin:$PATH \
     PYTHONDONTWRITEBYTECODE=1 \
     PYTHONUNBUFFERED=1 \
     MICROTEXTURE_DATA_DIR=/data \
-    MICROTEXTURE_HOST=0.0.0.0
+    MICROTEXTURE_HOST=0.0.0.0 \
+    MICROTEXTURE_PORT=8000
 USER 10001:10001
 VOLUME /data
 EXPOSE 8000
 # Ready means that experiments can run; the first start stores the bundled samples, hence the start period.
 HEALTHCHECK --interval=30s --timeout=5s --start-period=60s --retries=3 \
-    CMD ["python", "-c", "import os, urllib.request as r; r.urlopen('http://127.0.0.1:' + os.environ.get('PORT', '8000') + '/readyz', timeout=4)"]
+    CMD ["python", "-c", "import os, urllib.request as r; r.urlopen('http://127.0.0.1:' + os.environ['MICROTEXTURE_PORT'] + '/readyz', timeout=4)"]
 CMD ["microtexture", "serve"]

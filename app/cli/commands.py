@@ -1,5 +1,7 @@
 """The commands and their options. What takes long to import is imported by the command that needs it."""
 
+import errno
+import os
 from datetime import timedelta
 from typing import Annotated
 
@@ -47,6 +49,8 @@ def serve(
     with plain_errors():
         settings = read_settings()
         settings.data_dir.mkdir(parents=True, exist_ok=True)
+        if not os.access(settings.data_dir, os.W_OK):
+            raise PermissionError(errno.EACCES, "The data directory cannot be written", str(settings.data_dir))
 
     uvicorn.run(
         "app.main:create_app",
