@@ -62,6 +62,7 @@ def create_app(settings: Settings | None = None, service: Service | None = None)
         redoc_url=None,
         swagger_ui_oauth2_redirect_url=None,
         lifespan=_lifespan,
+        generate_unique_id_function=lambda route: route.name,
         middleware=[
             Middleware(CountRequests, metrics=metrics),
             Middleware(SecurityHeaders),

@@ -24,6 +24,7 @@ _PAGE = f"""<!doctype html>
 <link rel="stylesheet" href="{SWAGGER_URL}/swagger-ui.css">
 </head>
 <body>
+<nav class="swagger-ui"><div class="wrapper"><a class="link" href="/">← Microtexture</a></div></nav>
 <noscript><p>This page needs JavaScript; the document itself is <a href="{OPENAPI_URL}">openapi.json</a>.</p></noscript>
 <main id="swagger-ui" data-document="{OPENAPI_URL}"></main>
 <script src="{SWAGGER_URL}/swagger-ui-bundle.js"></script>

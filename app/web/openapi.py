@@ -27,7 +27,7 @@ _PARAMETER_REFS, _PARAMETER_SCHEMAS = models_json_schema(
 )
 
 DESCRIPTION = """
-Texture synthesis by example. Upload a photograph or take a bundled sample, name a method, get the texture.
+Upload a photograph or take a bundled sample, name a method, get the texture.
 
 * **In one call**: `POST /api/v1/synthesize` answers with the picture.
 * **As an experiment**, which is kept and has a page: `POST /api/v1/experiments`, then read its record, follow its

@@ -1,34 +1,20 @@
 """The OpenAPI document is right, and every route keeps its word under fuzzing."""
 
-import hypothesis
+import subprocess
+import sys
+from pathlib import Path
+
 import jsonschema_rs
 import pytest
-import schemathesis
-from hypothesis import HealthCheck, Phase
-from schemathesis.checks import load_all_checks
 
 from app.methods.registry import METHODS
 
-load_all_checks()
 URL = "/api/v1/openapi.json"
-FUZZING = hypothesis.settings(
-    max_examples=12,
-    deadline=None,
-    derandomize=True,
-    database=None,
-    phases=[Phase.explicit, Phase.generate],
-    suppress_health_check=list(HealthCheck),
-)
 
 
 @pytest.fixture(scope="module", name="document")
 def openapi_document(site):
     return site.client.get(URL).json()
-
-
-@pytest.fixture(scope="module")
-def api(site):
-    return schemathesis.openapi.from_url(f"{site.url}{URL}")
 
 
 def operations(document):
@@ -113,11 +99,23 @@ def test_declared_parameters_are_json_schemas(site):
         assert site.client.get(f"/api/v1/methods/{method['name']}").json() == method
 
 
-schema = schemathesis.pytest.from_fixture("api")
+def test_no_request_makes_a_route_break_its_word(site, operator, tmp_path):
+    """Never a 500, an undeclared status code, header or media type, or an answer beside its schema.
 
-
-@schema.parametrize()
-@FUZZING
-def test_no_request_makes_a_route_break_its_word(case):
-    """Never a 500, an undeclared status code or media type, or an answer beside its schema."""
-    case.call_and_validate(timeout=20)
+    Examples, edge cases of every parameter, random requests and sequences of calls, valid and not; the same each time.
+    Only that everything the schemas allow is taken is not asked for: no schema says what a photograph is, which ids
+    there are, or what a crop's bounds are.
+    """
+    command = [Path(sys.executable).with_name("schemathesis"), "run", f"{site.url}{URL}"]
+    options = {
+        "--header": f"Authorization: {operator['Authorization']}",
+        "--exclude-checks": "positive_data_acceptance",
+        "--max-examples": "4",
+        "--request-timeout": "20",
+        "--warnings": "off",
+    }
+    flags = ["--generation-deterministic", "--continue-on-failure", "--no-color"]
+    arguments = [*command, *flags, *(part for option in options.items() for part in option)]
+    result = subprocess.run(arguments, check=False, cwd=tmp_path, capture_output=True, text=True, timeout=300)
+    assert result.returncode == 0, result.stdout + result.stderr
+    assert "Tested: 18" in result.stdout

@@ -1,15 +1,15 @@
 """``/api/v1/experiments/{id}/events``: an experiment as it goes, as server-sent events."""
 
-from collections.abc import AsyncIterator
+from collections.abc import AsyncGenerator, AsyncIterator
 from contextlib import aclosing
-from typing import Annotated
+from typing import Annotated, cast
 
 from fastapi import APIRouter, Depends, Header
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 
-from app.experiments.model import Status
+from app.experiments.model import Snapshot, Status
 from app.web.api.experiments import ExperimentId
 from app.web.api.records import API
 from app.web.deps import ServiceDep
@@ -48,7 +48,7 @@ async def experiment_events(experiment_id: ExperimentId, service: ServiceDep) ->
     """  # noqa: D205 -- OpenAPI shows it as one paragraph
     status: Status | None = None
     number = 0
-    async with aclosing(service.watch(experiment_id)) as snapshots:
+    async with aclosing(cast("AsyncGenerator[Snapshot]", service.watch(experiment_id))) as snapshots:
         async for snapshot in snapshots:
             data = {
                 "status": snapshot.status,

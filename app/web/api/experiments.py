@@ -105,7 +105,7 @@ _CREATED = {
     responses={
         201: _CREATED,
         202: {**_CREATED, "description": "Accepted: it waits or runs."},
-        **problems(404, 422, 503),
+        **problems(422, 503),
     },
     openapi_extra={"security": OWNER},
 )

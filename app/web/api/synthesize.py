@@ -73,6 +73,8 @@ async def synthesize(request: Request, service: ServiceDep) -> Response:
             if not running.done():
                 raise ClientDisconnect
             picture, media_type = running.result()
+        except InvalidInputError as error:
+            raise InvalidInputError(error.message, _form_field(error.field)) from None
         finally:
             hung_up.cancel()
             running.cancel()
@@ -128,6 +130,11 @@ def preferred_format(accept: str) -> Format:
                 continue
     best = max(likings.values(), default=0.0)
     return "png" if best <= 0 or likings.get("png") == best else next(name for name in likings if likings[name] == best)
+
+
+def _form_field(field: str | None) -> str | None:
+    """Name the form's field that a field of the JSON body is here."""
+    return field and field.removeprefix("parameters.").removeprefix("inputs.0.")
 
 
 async def _hung_up(request: Request) -> None:
