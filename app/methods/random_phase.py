@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field as Option
+from pydantic.config import JsonDict
 
 from app.errors import InvalidInputError
 from app.images.png import PngWriter
@@ -18,7 +19,7 @@ from app.synthesis.spectral import log_modulus
 from app.synthesis.spot import centre, make_spot
 from app.synthesis.team import Team
 
-ADVANCED = {"advanced": True}
+ADVANCED: JsonDict = {"advanced": True}
 
 
 class RandomPhaseParams(StillParams):

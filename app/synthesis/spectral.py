@@ -23,7 +23,8 @@ Real = NDArray[np.float32]
 def _phase_table() -> Complex:
     """``exp(iθ)`` for the 65536 equidistant θ = π(1 − 2j / 65536) of ]−π, π]."""
     theta = np.pi * (1 - 2 * np.arange(STATES) / STATES)
-    return np.exp(1j * theta).astype(np.complex64)
+    table: Complex = np.exp(1j * theta).astype(np.complex64)
+    return table
 
 
 @cache
