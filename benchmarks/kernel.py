@@ -71,7 +71,7 @@ def to_png(h: Real, side: int) -> bytes:
 
 
 def all_outputs(side: int) -> None:
-    """Print how many bytes a run with every picture takes at most above the process before it; for a process of its own."""
+    """Print how many bytes a run with every picture takes at most above the process before it."""
     h = sample(512)
     to_array(h, 600)  # loads what is loaded once
     before = _status("VmRSS")
@@ -119,8 +119,8 @@ def main() -> None:
     for side in (1024, 2048):
         ratio = alternate(partial(to_array, sample(side), side), partial(pair, planes[side]), rounds[side])
         _line(f"RPN {side}² → {side}², array ÷ pair", 1.1, ratio)
-    for side in rounds:
-        ratio = alternate(partial(to_array, h, side, True), partial(to_array, h, side), rounds[side])
+    for side, count in rounds.items():
+        ratio = alternate(partial(to_array, h, side, True), partial(to_array, h, side), count)
         _line(f"ADSN ÷ RPN, 512² → {side}², array", 1.5, ratio)
     for side, png_aim in {1024: None, 2048: 1.1, 4096: 1.0}.items():
         ratio = alternate(partial(to_png, h, side), partial(pair, planes[side]), rounds[side])

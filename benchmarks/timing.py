@@ -1,4 +1,4 @@
-"""Ratios of two run times on a machine whose speed drifts: both are timed in turn, and the median of the ratios is taken."""
+"""Ratios of two run times on a machine whose speed drifts: both timed in turn, and the median of the ratios taken."""
 
 import statistics
 import time
@@ -24,7 +24,7 @@ def seconds(work: Callable[[], object]) -> float:
 
 
 def alternate(first: Callable[[], object], second: Callable[[], object], rounds: int) -> Ratio:
-    """Time ``first`` and ``second`` in turn, ``rounds`` times each after one unmeasured call, and compare neighbours."""
+    """Time both in turn, ``rounds`` times each after one unmeasured call, and compare neighbours."""
     first()
     second()
     times = [(seconds(first), seconds(second)) for _ in range(rounds)]

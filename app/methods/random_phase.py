@@ -30,36 +30,39 @@ class RandomPhaseParams(StillParams):
         ge=0,
         le=0.5,
         title="Transition α",
-        description="Width of the band along the border of the crop, as a part of its side, in which it fades out before it is "
-        "pasted into a larger image; only for textures larger than the crop. 0 cuts sharply and may leave streaks.",
+        description="Width of the band along the border of the crop, as a part of its side, in which it fades out "
+        "before it is pasted into a larger image; only for textures larger than the crop. 0 cuts sharply and may "
+        "leave streaks.",
         json_schema_extra=ADVANCED,
     )
     window: Literal["bump", "gaussian"] = Option(
         "bump",
         title="Window",
-        description="How the crop fades out along its border: 'bump' is the smooth step of the IPOL article (usual α 0.1), "
-        "'gaussian' the profile of the TIP article (usual α 0.2).",
+        description="How the crop fades out along its border: 'bump' is the smooth step of the IPOL article (usual α: "
+        "0.1), 'gaussian' the profile of the TIP article (usual α: 0.2).",
         json_schema_extra=ADVANCED,
     )
     phase: Literal["add", "replace"] = Option(
         "add",
         title="Phase",
-        description="'add' shifts the phases of all colours by the same random amount and keeps the colours right; 'replace' gives "
-        "all colours one common phase (the literature's “wrong RPN”), to show the false colours that come of it.",
+        description="'add' shifts the phases of all colours by the same random amount and keeps the colours right; "
+        "'replace' gives all colours one common phase (the literature's “wrong RPN”), to show the false colours that "
+        "come of it.",
         json_schema_extra=ADVANCED,
     )
     range: Literal["clip", "stretch"] = Option(
         "clip",
         title="Values out of range",
-        description="What becomes of values darker than black or brighter than white: 'clip' cuts them off; 'stretch' maps all values, "
-        "the same way in every colour, so that the extreme ones just fit.",
+        description="What becomes of values darker than black or brighter than white: 'clip' cuts them off; 'stretch' "
+        "maps all values, the same way in every colour, so that the extreme ones just fit.",
         json_schema_extra=ADVANCED,
     )
     add_smooth: bool = Option(
         False,
         title="Add the smooth component",
-        description="Put the slow changes of light and colour across the crop, which are taken out before the synthesis, back in "
-        "afterwards. Only for a texture of the crop's own size; it then no longer tiles without a seam.",
+        description="Put the slow changes of light and colour across the crop, which are taken out before the "
+        "synthesis, back in afterwards. Only for a texture of the crop's own size; it then no longer tiles without a "
+        "seam.",
         json_schema_extra=ADVANCED,
     )
 
@@ -70,8 +73,8 @@ def _check(sizes: Sequence[Size], params: RandomPhaseParams) -> None:
     width, height = params.width or size.width, params.height or size.height
     if params.add_smooth and (width, height) != (size.width, size.height):
         raise InvalidInputError(
-            f"The smooth component can be added only to a texture of the crop's own size, {size.width} × {size.height} pixels, "
-            f"and {width} × {height} is asked for: take that size, or leave the smooth component out.",
+            f"The smooth component can be added only to a texture of the crop's own size, {size.width} × {size.height} "
+            f"pixels, and {width} × {height} is asked for: take that size, or leave the smooth component out.",
             "parameters.add_smooth",
         )
 
@@ -106,7 +109,7 @@ class _Run:
         return Picture("texture", "Texture", self._width, self._height, writer.finish())
 
     def _field(self, start: float, ends: dict[str, float]) -> Field:
-        """The noise's field, which tells the progress of its stages; each goes from the stage before it to its own end."""
+        """The noise's field; each of its stages goes from the end of the one before to its own in ``ends``."""
         begins = dict(zip(ends, [start, *ends.values()], strict=False))
 
         def progress(stage: str, part: float) -> None:
@@ -181,7 +184,7 @@ def _run(
     source = sources[0]
     _check([Size(source.pixels.shape[1], source.pixels.shape[0], source.pixels.shape[2])], params)
     if not np.isfinite(source.pixels).all():
-        raise InvalidInputError("The crop holds values that are not finite numbers: save the picture anew.", "inputs.0")
+        raise InvalidInputError("The crop holds values that are not finite numbers: save it anew.", "inputs.0")
     with Team(context.threads) as team:
         yield from _Run(source, params, context, team, rayleigh).pictures()
 

@@ -2,12 +2,13 @@
 
     Z = m + (M N)^(−1/2) (h − m) ∗ Y,   Y a Gaussian white noise, the same for every channel.
 
-In the Fourier domain that is RPN times a Rayleigh noise R of E R² = 1: Ẑ(ξ) = ĥ(ξ) R(ξ) exp(iθ(ξ)), and with the same seed θ is
-the RPN's. The mean is kept: the coefficient at the origin is not randomised.
+In the Fourier domain that is RPN times a Rayleigh noise R of E R² = 1: Ẑ(ξ) = ĥ(ξ) R(ξ) exp(iθ(ξ)), and with the
+same seed θ is the RPN's. The mean is kept: the coefficient at the origin is not randomised.
 
 References
 ----------
-Galerne, Gousseau, Morel, "Random Phase Textures: Theory and Synthesis", IEEE TIP 2011: definition 1, theorem 2, section 4.
+Galerne, Gousseau, Morel, "Random Phase Textures: Theory and Synthesis", IEEE TIP 2011: definition 1, theorem 2,
+section 4.
 """
 
 from typing import Literal
@@ -36,12 +37,13 @@ def adsn(
     h : ndarray of float32, shape (H, W) or (H, W, C)
         The sample; any number of channels, any range, finite.
     height, width : int, optional
-        Size of the texture; default: the sample's. Along a longer axis the spot is extended (see `app.synthesis.spot`), along a
-        shorter one the sample's centre is taken.
+        Size of the texture; default: the sample's. Along a longer axis the spot is extended (see
+        `app.synthesis.spot`), along a shorter one the sample's centre is taken.
     seed : int
         Not negative; the result depends on nothing else.
     phase : {"add", "replace"}
-        "replace" gives every channel's modulus one common phase: the literature's "wrong RPN", which makes false colours.
+        "replace" gives every channel's modulus one common phase: the literature's "wrong RPN", which makes false
+        colours.
     alpha, window
         The spot's transition, see `app.synthesis.spot.window`.
     add_smooth : bool

@@ -3,7 +3,7 @@
 Three passes over blocks, each shared out over the threads of a `Team`:
 
 1. rows of the spot → real transforms along x (rows outside the spot are zero and are never transformed);
-2. columns → transform along y, minus the smooth component (same size), times the random spectrum, inverse transform along y;
+2. columns → transform along y, minus the smooth component (same size), times the random spectrum, back along y;
 3. rows → inverse real transform along x, plus the mean, handed to a sink.
 
 Every block of columns has its own stream of random numbers, so the result does not depend on the number of threads.
@@ -68,7 +68,7 @@ def row_blocks(height: int) -> list[tuple[int, int]]:
 
 
 def _blocks_of(channels: int, rows: int, width: int) -> list[Complex]:
-    """Uninitialised blocks of columns (channels, rows, columns), in one piece of memory so that huge pages can back it."""
+    """Uninitialised blocks of columns (channels, rows, columns), in one piece of memory that huge pages can back."""
     memory = np.empty(channels * rows * (width // 2 + 1), np.complex64)
     return [
         memory[channels * rows * first : channels * rows * last].reshape(channels, rows, last - first)
@@ -120,7 +120,7 @@ class Field:
             raise ValueError("The sample holds values that are not finite.")
 
     def _transform_rows(self, planes: Real, offsets: Real) -> list[Complex]:
-        """Blocks of columns (C, rows of the spot, columns) of the transforms along x of the centred planes − offsets."""
+        """Blocks of columns (C, rows of the spot, columns) of the transforms along x of planes − offsets, centred."""
         (channels, high, wide), width = planes.shape, self.noise.width
         left = (width - wide) // 2
         spectra = _blocks_of(channels, high, width)
@@ -129,9 +129,9 @@ class Field:
             begin, end = rows
             padded = np.zeros((channels, end - begin, width), np.float32)
             inner = padded[:, :, left : left + wide]
-            for channel, plane in enumerate(inner):
-                plane[...] = planes[channel, begin:end]
-                plane -= offsets[channel]
+            for channel, offset in enumerate(offsets):
+                inner[channel] = planes[channel, begin:end]
+                inner[channel] -= offset
             rows_spectrum = scipy.fft.rfft(padded, workers=1)
             for (first, last), target in zip(column_blocks(width), spectra, strict=True):
                 target[:, begin:end] = rows_spectrum[:, :, first:last]
@@ -199,8 +199,8 @@ class Field:
     def emit(self, sink: Sink, stage: str = "texture") -> None:
         """Hand every row block to ``sink(first row, planes)``, from the team's threads and in any order.
 
-        The planes, one for each channel, are (rows, width) float32, the mean included; they are made as the sink asks for
-        them and belong to it.
+        The planes, one for each channel, are (rows, width) float32, the mean included; they are made as the sink
+        asks for them and belong to it.
         """
 
         def transform(rows: tuple[int, int]) -> None:

@@ -27,8 +27,9 @@ class Extent:
 class Levels:
     """A sink that rounds values of [low, high] to the whole numbers 0 … peak, cutting off what is outside.
 
-    With [low, high] = [0, the sample's peak] values keep their place and those outside are cut off. With an `Extent`'s, the histogram
-    is stretched: the same affine map for all channels takes everything into the range, and is the identity if nothing was outside.
+    With [low, high] = [0, the sample's peak] values keep their place and those outside are cut off. With an
+    `Extent`'s, the histogram is stretched: the same affine map for all channels takes everything into the range,
+    and is the identity if nothing was outside.
 
     Parameters
     ----------
@@ -53,8 +54,8 @@ class Levels:
         pixels: NDArray[np.unsignedinteger] | None = None
         for channel, plane in enumerate(planes):
             if self._scale != 1:
-                plane *= self._scale
-            plane += self._shift
+                np.multiply(plane, self._scale, out=plane)
+            np.add(plane, self._shift, out=plane)
             np.clip(plane, 0, self._limit, out=plane)
             if pixels is None:
                 pixels = np.empty((*plane.shape, self._channels), self._type)

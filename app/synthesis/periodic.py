@@ -1,22 +1,23 @@
 """Moisan's decomposition h = p + s of an image into a periodic and a smooth component, through the Poisson problem.
 
-p is the solution of Δp = Δᵢh with mean p = mean h, where Δf(x) is the sum over the four neighbours y of f(x) − f(y), taken on the
-torus, and Δᵢ is the same with the neighbours inside the image only. Their difference v = Δh − Δᵢh lives on the border: it is the
-jump between opposite sides. So Δs = v, and in the Fourier domain
+p is the solution of Δp = Δᵢh with mean p = mean h, where Δf(x) is the sum over the four neighbours y of f(x) −
+f(y), taken on the torus, and Δᵢ is the same with the neighbours inside the image only. Their difference v = Δh −
+Δᵢh lives on the border: it is the jump between opposite sides. So Δs = v, and in the Fourier domain
 
     ŝ(k) = v̂(k) / (4 sin²(π k₁/H) + 4 sin²(π k₂/W)),   ŝ(0) = 0,   p̂ = ĥ − ŝ,
 
-which needs one forward transform of h, and, because v is two lines along each axis, only two transforms of *lines* for v̂:
+which needs one forward transform of h, and, because v is two lines along each axis, only two transforms of *lines*
+for v̂:
 
     v̂(k) = ĵ(k₂) (1 − exp(2πi k₁/H)) + ĵ'(k₁) (1 − exp(2πi k₂/W)),
 
-with j(x) = h(0, x) − h(H − 1, x) and j'(y) = h(y, 0) − h(y, W − 1). Dividing the jumps alone, and not Δᵢh, by the small denominators
-of low frequencies keeps single precision accurate there.
+with j(x) = h(0, x) − h(H − 1, x) and j'(y) = h(y, 0) − h(y, W − 1). Dividing the jumps alone, and not Δᵢh, by the
+small denominators of low frequencies keeps single precision accurate there.
 
 References
 ----------
-Moisan, "Periodic plus smooth image decomposition", JMIV 2011; Galerne, Gousseau, Morel, "Random Phase Textures: Theory and
-Synthesis", IEEE TIP 2011, equation 3.
+Moisan, "Periodic plus smooth image decomposition", JMIV 2011; Galerne, Gousseau, Morel, "Random Phase Textures:
+Theory and Synthesis", IEEE TIP 2011, equation 3.
 """
 
 from functools import lru_cache
@@ -43,8 +44,8 @@ def _axis(length: int, count: int) -> tuple[Complex, Real]:
 class SmoothSpectrum:
     """ŝ of an image (H, W, C), one block of columns of the half spectrum at a time.
 
-    v̂ is a sum of two products of a function of k₁ and one of k₂: as real and imaginary parts, a matrix product of inner
-    dimension 4.
+    v̂ is a sum of two products of a function of k₁ and one of k₂: as real and imaginary parts, a matrix product of
+    inner dimension 4.
     """
 
     def __init__(self, h: Real) -> None:
@@ -134,8 +135,8 @@ def smooth_component(h: Real, threads: int = 1) -> Real:
     True
     """
     if h.ndim == 2:
-        return smooth_planes(h[:, :, None], threads)[0]
-    return smooth_planes(h, threads).transpose(1, 2, 0)
+        return smooth_component(h[:, :, None], threads)[:, :, 0]
+    return np.moveaxis(smooth_planes(h, threads), 0, 2)
 
 
 def periodic_component(h: Real, threads: int = 1) -> Real:
@@ -162,5 +163,5 @@ def periodic_component(h: Real, threads: int = 1) -> Real:
     True
     """
     if h.ndim == 2:
-        return periodic_planes(h[:, :, None], threads)[0]
-    return periodic_planes(h, threads).transpose(1, 2, 0)
+        return periodic_component(h[:, :, None], threads)[:, :, 0]
+    return np.moveaxis(periodic_planes(h, threads), 0, 2)

@@ -6,8 +6,8 @@ the same θ for every channel, which keeps the phase displacements between chann
 
 References
 ----------
-Galerne, Gousseau, Morel, "Random Phase Textures: Theory and Synthesis", IEEE TIP 2011: definition 4, sections 5.1–5.3;
-"Micro-Texture Synthesis by Phase Randomization", IPOL 2011.
+Galerne, Gousseau, Morel, "Random Phase Textures: Theory and Synthesis", IEEE TIP 2011: definition 4, sections
+5.1–5.3; "Micro-Texture Synthesis by Phase Randomization", IPOL 2011.
 """
 
 from typing import Literal
@@ -36,12 +36,13 @@ def rpn(
     h : ndarray of float32, shape (H, W) or (H, W, C)
         The sample; any number of channels, any range, finite.
     height, width : int, optional
-        Size of the texture; default: the sample's. Along a longer axis the spot is extended (see `app.synthesis.spot`), along a
-        shorter one the sample's centre is taken.
+        Size of the texture; default: the sample's. Along a longer axis the spot is extended (see
+        `app.synthesis.spot`), along a shorter one the sample's centre is taken.
     seed : int
         Not negative; the result depends on nothing else.
     phase : {"add", "replace"}
-        "replace" gives every channel's modulus one common phase: the literature's "wrong RPN", which makes false colours.
+        "replace" gives every channel's modulus one common phase: the literature's "wrong RPN", which makes false
+        colours.
     alpha, window
         The spot's transition, see `app.synthesis.spot.window`.
     add_smooth : bool

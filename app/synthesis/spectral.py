@@ -1,8 +1,9 @@
 """Random phases and Rayleigh moduli on the half spectrum of a real transform.
 
-The discrete Fourier transform of a real image of height H and width W is kept as `scipy.fft.rfft2` gives it: H rows (frequency
-k₁ = 0 … H − 1) and W // 2 + 1 columns (k₂ = 0 … W // 2); the other half follows from ĥ(−k) = conj ĥ(k). Inside column 0, and for
-an even W inside column W / 2, both k and −k are present, so symmetry has to be seen to there.
+The discrete Fourier transform of a real image of height H and width W is kept as `scipy.fft.rfft2` gives it: H rows
+(frequency k₁ = 0 … H − 1) and W // 2 + 1 columns (k₂ = 0 … W // 2); the other half follows from ĥ(−k) = conj ĥ(k).
+Inside column 0, and for an even W inside column W / 2, both k and −k are present, so symmetry has to be seen to
+there.
 """
 
 from functools import cache
@@ -29,10 +30,11 @@ def _phase_table() -> Complex:
 
 @cache
 def _rayleigh_table() -> Real:
-    """Rayleigh moduli with E R² = 1: R² = −ln U, averaged over each of the 65536 intervals of U so that E R² is exact."""
+    """Rayleigh moduli: R² = −ln U, averaged over each of the 65536 intervals of U, so that E R² = 1 exactly."""
     edges = np.arange(STATES + 1) / STATES
     primitive = edges - edges * np.log(np.maximum(edges, 1e-300))  # of −ln u
-    return np.sqrt(np.diff(primitive) * STATES).astype(np.float32)
+    table: Real = np.sqrt(np.diff(primitive) * STATES).astype(np.float32)
+    return table
 
 
 def column_blocks(width: int) -> list[tuple[int, int]]:
@@ -48,7 +50,7 @@ def column_blocks(width: int) -> list[tuple[int, int]]:
 
 
 def random_block(height: int, width: int, block: tuple[int, int], seed: int, rayleigh: bool = False) -> Complex:
-    """One block of columns of `random_spectrum`; it depends on no other block, so that blocks can be made in any order.
+    """One block of columns of `random_spectrum`; it depends on no other block, so that any order will do.
 
     Parameters
     ----------
@@ -95,9 +97,10 @@ def _symmetrise(column: Complex) -> None:
 def random_spectrum(height: int, width: int, seed: int, rayleigh: bool = False) -> Complex:
     """``exp(iθ)`` of a uniform random phase θ on the half spectrum, or ``R exp(iθ)`` of a Gaussian white noise.
 
-    θ is odd, uniform on ]−π, π] (on 65536 equidistant values), 0 or π with equal chances where k = −k, and 0 at the origin.
-    With ``rayleigh`` the same θ, for the same seed, comes with an independent modulus R that is Rayleigh with E R² = 1, and
-    |N(0, 1)| where k = −k: the transform of a white noise of variance 1 / (H W), without its mean.
+    θ is odd, uniform on ]−π, π] (on 65536 equidistant values), 0 or π with equal chances where k = −k, and 0 at the
+    origin. With ``rayleigh`` the same θ, for the same seed, comes with an independent modulus R that is Rayleigh
+    with E R² = 1, and |N(0, 1)| where k = −k: the transform of a white noise of variance 1 / (H W), without its
+    mean.
 
     Parameters
     ----------
@@ -114,8 +117,8 @@ def random_spectrum(height: int, width: int, seed: int, rayleigh: bool = False) 
 
     References
     ----------
-    Galerne, Gousseau, Morel, "Random Phase Textures: Theory and Synthesis", IEEE TIP 2011: definition 3 (random phase),
-    section 4 (the white noise's phase and Rayleigh modulus).
+    Galerne, Gousseau, Morel, "Random Phase Textures: Theory and Synthesis", IEEE TIP 2011: definition 3 (random
+    phase), section 4 (the white noise's phase and Rayleigh modulus).
 
     Examples
     --------
@@ -135,8 +138,8 @@ DECADES = 4.0
 def log_modulus(power: Real, width: int, first: int, last: int) -> NDArray[np.uint8]:
     """Rows ``first`` to ``last`` − 1 of the picture of a spectrum: centred, grey, logarithmic.
 
-    Grey 255 is the greatest modulus away from the origin, and 0 is four powers of ten below it or less. The origin, which only tells
-    the mean, counts as the greatest.
+    Grey 255 is the greatest modulus away from the origin, and 0 is four powers of ten below it or less. The origin,
+    which only tells the mean, counts as the greatest.
 
     Parameters
     ----------
@@ -153,7 +156,7 @@ def log_modulus(power: Real, width: int, first: int, last: int) -> NDArray[np.ui
     greatest = max(power.flat[1:].max(initial=0), np.finfo(np.float32).tiny)
     k = (np.arange(first, last) - height // 2) % height
     right, left = power[k, : (width + 1) // 2], power[-k % height, width // 2 : 0 : -1]
-    whole = np.concatenate([left, right], axis=1) / greatest
+    whole = np.minimum(np.concatenate([left, right], axis=1), greatest) / greatest
     if first <= height // 2 < last:
         whole[height // 2 - first, width // 2] = 1
     decades = np.log10(np.maximum(whole, 10 ** (-2 * DECADES))) / 2

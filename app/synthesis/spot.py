@@ -6,8 +6,9 @@ on a centred rectangle of the sample's size, and m elsewhere.
 
 References
 ----------
-Galerne, Gousseau, Morel, "Random Phase Textures: Theory and Synthesis", IEEE TIP 2011, equation 4 and figure 9 (the Gaussian
-profile); Galerne, Gousseau, Morel, "Micro-Texture Synthesis by Phase Randomization", IPOL 2011, "Spot Extension Technique".
+Galerne, Gousseau, Morel, "Random Phase Textures: Theory and Synthesis", IEEE TIP 2011, equation 4 and figure 9 (the
+Gaussian profile); Galerne, Gousseau, Morel, "Micro-Texture Synthesis by Phase Randomization", IPOL 2011, "Spot
+Extension Technique".
 """
 
 from dataclasses import dataclass
@@ -77,8 +78,8 @@ def centre(h: Real, height: int, width: int) -> Real:
 class Spot:
     """An extended spot as planes, without the constant around its rectangle.
 
-    ``planes`` (C, M₁, N₁) is h̃ − m on the rectangle whose first pixel is (``top``, ``left``) of an image of ``height`` ×
-    ``width`` pixels; ``mean`` is m, shape (C,).
+    ``planes`` (C, M₁, N₁) is h̃ − m on the rectangle whose first pixel is (``top``, ``left``) of an image of
+    ``height`` × ``width`` pixels; ``mean`` is m, shape (C,).
     """
 
     planes: Real

@@ -24,10 +24,12 @@ class Team:
         self._pool.shutdown(wait=True, cancel_futures=True)
 
     def run(self, task: Callable[[T], object], items: Iterable[T], done: Callable[[float], None]) -> None:
-        """Call ``task(item)`` for every item in the pool, and ``done(part)`` in this thread after each, ``part`` going to 1.
+        """Call ``task(item)`` for every item in the pool, and ``done(part)`` in this thread after each.
 
-        If a task or ``done`` raises, the tasks that have not begun are dropped, and the error is raised once the running
-        ones have ended.
+        ``part`` goes to 1.
+
+        If a task or ``done`` raises, the tasks that have not begun are dropped, and the error is raised once the
+        running ones have ended.
         """
         waiting: set[Future[object]] = {self._pool.submit(task, item) for item in items}
         total = len(waiting)
