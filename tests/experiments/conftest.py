@@ -1,0 +1,79 @@
+"""A service with the inline engine, real files and a real photograph."""
+
+import shutil
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.executor.inline import InlineExecutor
+from app.experiments.model import Sample
+from app.experiments.service import Service
+from app.images.png import encode_png
+from app.settings import Settings
+from app.store.blobs import FileBlobs
+from app.store.sql import SqlStore
+from app.worker import run_job
+
+OPERATOR = "the operator's own token"
+
+
+@pytest.fixture
+def settings(tmp_path: Path) -> Settings:
+    return Settings(
+        data_dir=tmp_path / "data",
+        samples_dir=tmp_path / "no samples",
+        operator_token=OPERATOR,
+        queue_limit=3,
+        max_output_pixels=1 << 16,
+        threads=1,
+    )
+
+
+@pytest.fixture
+def service(settings: Settings) -> Iterator[Service]:
+    service = a_service(settings)
+    service.start()
+    yield service
+    service.close()
+
+
+def a_service(settings: Settings) -> Service:
+    settings.data_dir.mkdir(exist_ok=True)
+    store, blobs = SqlStore(settings.sql_url), FileBlobs(settings.data_dir / "files")
+    return Service(store, blobs, InlineExecutor(settings, run_job), settings)
+
+
+@pytest.fixture
+def photograph(tmp_path: Path) -> Path:
+    """A small picture that is noise all over."""
+    pixels = np.random.default_rng(7).integers(0, 256, (48, 64, 3), dtype=np.uint8)
+    path = tmp_path / "photograph.png"
+    path.write_bytes(encode_png(pixels))
+    return path
+
+
+@pytest.fixture
+def upload(photograph: Path, tmp_path: Path) -> Path:
+    """A copy that a test may give away."""
+    return shutil.copy(photograph, tmp_path / "upload")
+
+
+@pytest.fixture
+def sample(service: Service, upload: Path) -> Sample:
+    return service.add_sample(upload, None)
+
+
+@pytest.fixture
+def make_service(settings: Settings) -> Iterator[Callable[..., Service]]:
+    """Make a service that is not started yet, on the same data; closed in the end."""
+    made: list[Service] = []
+
+    def making(other: Settings | None = None) -> Service:
+        made.append(a_service(other or settings))
+        return made[-1]
+
+    yield making
+    for service in made:
+        service.close()

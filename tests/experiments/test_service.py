@@ -1,0 +1,397 @@
+"""The use cases, with real backends and an engine in this process."""
+
+import asyncio
+import shutil
+from collections.abc import Callable
+from dataclasses import replace
+from datetime import timedelta
+from pathlib import Path
+from typing import Any
+
+import imagecodecs
+import numpy as np
+import pytest
+from PIL import Image
+
+from app.errors import (
+    BrokenFileError,
+    BusyError,
+    DeletedError,
+    ForbiddenError,
+    InvalidInputError,
+    NotFoundError,
+)
+from app.experiments.model import Experiment, Sample, Snapshot, Status
+from app.experiments.service import Service
+from app.experiments.submission import NewExperiment, NewInput
+from app.images.crop import Rectangle
+from app.settings import Settings
+
+OWNER = "the owner's token"
+SECONDS = 30.0
+
+
+def a_request(sample: Sample, **parameters: Any) -> NewExperiment:
+    return NewExperiment("rpn", (NewInput(sample.id, Rectangle(4, 2, 40, 36)),), parameters)
+
+
+def finished(service: Service, request: NewExperiment) -> Experiment:
+    """Submit and wait."""
+    experiment = asyncio.run(service.wait(service.submit(request, OWNER).id, SECONDS))
+    assert experiment.status.finished
+    return experiment
+
+
+def files(settings: Settings) -> set[str]:
+    """Names of all files below the data directory but the database's and the lock."""
+    kept = {"microtexture.sqlite3", "microtexture.sqlite3-wal", "microtexture.sqlite3-shm", ".lock"}
+    return {path.name for path in settings.data_dir.rglob("*") if path.is_file()} - kept
+
+
+def test_a_photograph_becomes_a_texture(service: Service, sample: Sample) -> None:
+    experiment = finished(service, a_request(sample, width=70, seed=3))
+    assert (experiment.status, experiment.error) == (Status.SUCCEEDED, None)
+    assert experiment.parameters["width"] == 70
+    assert experiment.parameters["height"] == 36
+    listed = [output.name for output in experiment.outputs if output.listed]
+    assert listed == ["texture", "crop", "periodic", "smooth", "spot", "input-spectrum", "output-spectrum"]
+    for output in experiment.outputs:
+        path = service.output(experiment.id, output.name)[1]
+        assert path.stat().st_size == output.bytes
+        if output.listed:
+            assert Image.open(path).size == (output.width, output.height)
+    texture = service.output(experiment.id, "texture")[0]
+    assert (texture.width, texture.height) == (70, 36)
+    assert "texture" in experiment.timings
+    assert all(seconds >= 0 for seconds in experiment.timings.values())
+
+
+def test_the_crop_output_is_the_samples_pixels(service: Service, sample: Sample, photograph: Path) -> None:
+    experiment = finished(service, a_request(sample))
+    crop = imagecodecs.png_decode(service.output(experiment.id, "crop")[1].read_bytes())
+    assert np.array_equal(crop, imagecodecs.png_decode(photograph.read_bytes())[2:38, 4:44])
+
+
+def test_the_same_experiment_gives_the_same_bytes_and_shares_the_file(service: Service, sample: Sample) -> None:
+    one, other = (finished(service, a_request(sample, seed=5)) for _ in range(2))
+    assert service.output(one.id, "texture")[1] == service.output(other.id, "texture")[1]
+    assert (
+        service.output(finished(service, a_request(sample, seed=6)).id, "texture")[1]
+        != service.output(one.id, "texture")[1]
+    )
+
+
+def test_identifiers_are_long_and_never_look_like_an_option(service: Service, sample: Sample) -> None:
+    identifiers = {finished(service, a_request(sample)).id for _ in range(3)}
+    assert len(identifiers) == 3
+    assert all(len(each) >= 16 and not each.startswith("-") for each in identifiers)
+
+
+def test_thumbnails_are_hidden_and_a_preview_is_made_when_asked_for(service: Service, sample: Sample) -> None:
+    experiment = finished(service, a_request(sample))
+    for name in (".thumbnail-crop", ".thumbnail-texture"):
+        output, path = service.output(experiment.id, name)
+        assert not output.listed
+        assert max(Image.open(path).size) <= 320
+    output, path = service.output(experiment.id, ".preview")
+    assert Image.open(path).size == (output.width, output.height) == (1200, 630)
+
+
+@pytest.mark.parametrize(
+    ("change", "field", "words"),
+    [
+        ({"method": "nothing"}, None, "no method"),
+        ({"inputs": ()}, "inputs", "1 input"),
+        ({"inputs": (NewInput("nothing"),)}, None, "no such photograph"),
+        ({"crop": Rectangle(30, 0, 40, 10)}, "inputs.0.crop", "outside"),
+        ({"crop": Rectangle(0, 0, 0, 10)}, "inputs.0.crop", "at least"),
+        ({"parameters": {"alpha": 7}}, "parameters.alpha", "less than"),
+        ({"parameters": {"alpha": "wide"}}, "parameters.alpha", "'wide'"),
+        ({"parameters": {"seed": -1}}, "parameters.seed", "greater than"),
+        ({"parameters": {"seed": 1 << 53}}, "parameters.seed", "less than"),
+        ({"parameters": {"colour": 1}}, "parameters.colour", "no parameter 'colour'"),
+        ({"parameters": {"width": 1 << 12, "height": 1 << 12}}, None, "smaller"),
+        ({"parameters": {"add_smooth": True, "width": 50}}, "parameters.add_smooth", "own size"),
+    ],
+)
+def test_what_cannot_run_is_refused_with_words(
+    service: Service, sample: Sample, change: dict[str, Any], field: str | None, words: str
+) -> None:
+    request = a_request(sample)
+    if "crop" in change:
+        change = {"inputs": (NewInput(sample.id, change["crop"]),)}
+    with pytest.raises(Exception) as refusal:  # noqa: PT011 - its class is asserted below
+        service.submit(replace(request, **change), OWNER)
+    assert getattr(refusal.value, "field", None) == field
+    assert words in str(refusal.value)
+    assert sum(service.counts().values()) == 0
+
+
+def test_a_crop_with_transparent_pixels_is_refused_and_an_opaque_one_runs(service: Service, tmp_path: Path) -> None:
+    pixels = np.random.default_rng(1).integers(0, 256, (40, 40, 4), dtype=np.uint8)
+    pixels[..., 3] = 255
+    pixels[:5, :5, 3] = 100
+    Image.fromarray(pixels).save(tmp_path / "hole.png")
+    sample = service.add_sample(tmp_path / "hole.png", None)
+    assert sample.transparent
+    with pytest.raises(InvalidInputError, match="transparent") as refusal:
+        service.submit(NewExperiment("rpn", (NewInput(sample.id),), {}), OWNER)
+    assert refusal.value.field == "inputs.0.crop"
+    opaque = NewExperiment("rpn", (NewInput(sample.id, Rectangle(5, 5, 35, 35)),), {})
+    assert finished(service, opaque).status is Status.SUCCEEDED
+
+
+def test_an_upload_is_gone_whatever_comes_of_it(service: Service, upload: Path, settings: Settings) -> None:
+    service.add_sample(upload, None)
+    assert not upload.exists()
+    upload.write_bytes(b"\x89PNG\r\n\x1a\n and no more")
+    before = files(settings)
+    with pytest.raises(BrokenFileError):
+        service.add_sample(upload, None)
+    assert not upload.exists()
+    assert files(settings) == before
+
+
+def test_only_its_owner_and_the_operator_may_change_an_experiment(
+    service: Service, sample: Sample, settings: Settings
+) -> None:
+    experiment = finished(service, a_request(sample))
+    assert settings.operator_token is not None
+    operator = settings.operator_token.get_secret_value()
+    for stranger in (None, "", "another token", experiment.owner, "\ud800"):
+        with pytest.raises(ForbiddenError):
+            service.cancel_or_delete(experiment.id, stranger)
+        with pytest.raises(ForbiddenError):
+            service.set_listed(experiment.id, False, stranger)
+    service.set_listed(experiment.id, False, OWNER)
+    assert service.page().experiments == ()
+    service.set_listed(experiment.id, True, operator)
+    assert [each.id for each in service.page().experiments] == [experiment.id]
+    assert OWNER not in repr(experiment)
+
+
+def test_deleting_removes_what_nothing_else_refers_to(
+    service: Service, sample: Sample, settings: Settings, photograph: Path
+) -> None:
+    before = files(settings)
+    assert len(before) == 1
+    one, twin = (finished(service, a_request(sample, seed=1)) for _ in range(2))
+    asyncio.run(service.converted(one.id, "texture", "tiff", 16))
+    service.output(one.id, ".preview")
+    service.rendition(sample.id, 100)
+    service.cancel_or_delete(one.id, OWNER)
+    with pytest.raises(DeletedError):
+        service.get(one.id)
+    assert service.output(twin.id, "texture")[1].exists()
+    service.cancel_or_delete(twin.id, OWNER)
+    with pytest.raises(NotFoundError):
+        service.sample(sample.id)
+    assert files(settings) == set()
+
+
+def test_deleting_keeps_a_sample_that_another_experiment_uses(service: Service, sample: Sample) -> None:
+    one, other = (finished(service, a_request(sample, seed=seed)) for seed in (1, 2))
+    service.cancel_or_delete(one.id, OWNER)
+    assert service.sample(sample.id) == sample
+    assert service.output(other.id, "texture")[1].exists()
+
+
+def test_cancelling_stops_what_runs_and_what_waits(service: Service, sample: Sample) -> None:
+    long = {"width": 256, "height": 256}
+    running, waiting = (service.submit(a_request(sample, **long), OWNER) for _ in range(2))
+    service.cancel_or_delete(waiting.id, OWNER)
+    service.cancel_or_delete(running.id, OWNER)
+    assert service.get(waiting.id).status is Status.CANCELLED
+    assert service.snapshot(waiting.id).status is Status.CANCELLED
+    ended = asyncio.run(service.wait(running.id, SECONDS))
+    assert ended.status in {Status.CANCELLED, Status.SUCCEEDED}  # it may have been faster
+    assert finished(service, a_request(sample)).status is Status.SUCCEEDED
+
+
+def test_one_too_many_is_told_to_come_back(
+    settings: Settings, upload: Path, make_service: Callable[..., Service]
+) -> None:
+    service = make_service()
+    sample = service.add_sample(upload, None)
+    waiting = [service.submit(a_request(sample), OWNER) for _ in range(settings.queue_limit)]
+    with pytest.raises(BusyError):
+        service.submit(a_request(sample), OWNER)
+    assert [service.snapshot(each.id).position for each in waiting] == [1, 2, 3]
+    service.start()
+    for each in waiting:
+        assert asyncio.run(service.wait(each.id, SECONDS)).status is Status.SUCCEEDED
+
+
+def test_what_was_accepted_is_finished_after_a_restart(upload: Path, make_service: Callable[..., Service]) -> None:
+    before = make_service()
+    accepted = before.submit(a_request(before.add_sample(upload, None)), OWNER)
+    before.close()
+    after = make_service()
+    assert after.get(accepted.id).status is Status.QUEUED
+    after.start()
+    assert asyncio.run(after.wait(accepted.id, SECONDS)).status is Status.SUCCEEDED
+
+
+def test_waiting_returns_in_time_even_if_nothing_happens(upload: Path, make_service: Callable[..., Service]) -> None:
+    service = make_service()
+    experiment = service.submit(a_request(service.add_sample(upload, None)), OWNER)
+    assert asyncio.run(service.wait(experiment.id, 0.05)).status is Status.QUEUED
+
+
+def test_watching_ends_with_the_finished_state(service: Service, sample: Sample) -> None:
+    async def watched() -> list[Snapshot]:
+        experiment = service.submit(a_request(sample, width=256, height=256), OWNER)
+        return [snapshot async for snapshot in service.watch(experiment.id)]
+
+    seen = asyncio.run(watched())
+    assert seen[-1].status is Status.SUCCEEDED
+    assert seen[-1].fraction == 1.0
+    assert not any(snapshot.status.finished for snapshot in seen[:-1])
+    fractions = [snapshot.fraction for snapshot in seen]
+    assert fractions == sorted(fractions)
+
+
+def test_an_experiment_that_another_process_finishes_is_noticed(
+    upload: Path, make_service: Callable[..., Service]
+) -> None:
+    idle, working = make_service(), make_service()
+    sample = working.add_sample(upload, None)
+    working.start()
+    experiment = working.submit(a_request(sample), OWNER)
+    assert asyncio.run(idle.wait(experiment.id, SECONDS)).status is Status.SUCCEEDED
+
+
+def test_the_texture_at_16_bits_is_the_same_one_and_made_once(service: Service, sample: Sample) -> None:
+    experiment = finished(service, a_request(sample))
+    path, media_type = asyncio.run(service.converted(experiment.id, "texture", "png", 16))
+    deep = imagecodecs.png_decode(path.read_bytes())
+    shallow = imagecodecs.png_decode(service.output(experiment.id, "texture")[1].read_bytes())
+    assert (deep.dtype, media_type) == (np.uint16, "image/png")
+    assert np.abs(deep / 257.0 - shallow).max() <= 0.5 + 1e-3  # 8 bits are the 16 rounded
+    assert asyncio.run(service.converted(experiment.id, "texture", "png", 16))[0] == path
+    assert [output.name for output in service.get(experiment.id).outputs].count(".texture-16") == 1
+    tiff, _ = asyncio.run(service.converted(experiment.id, "texture", "tiff", 16))
+    assert np.array_equal(imagecodecs.imread(tiff), deep)
+
+
+@pytest.mark.parametrize(("name", "file_format"), [("texture", "jpeg"), ("texture", "webp"), ("crop", "png")])
+def test_what_has_no_16_bits_says_so(service: Service, sample: Sample, name: str, file_format: Any) -> None:
+    experiment = finished(service, a_request(sample))
+    with pytest.raises(InvalidInputError, match=r"(16|8) bits") as refusal:
+        asyncio.run(service.converted(experiment.id, name, file_format, 16))
+    assert refusal.value.field == "depth"
+
+
+@pytest.mark.parametrize("file_format", ["png", "jpeg", "webp", "tiff"])
+def test_outputs_come_in_every_format_and_are_kept(service: Service, sample: Sample, file_format: Any) -> None:
+    experiment = finished(service, a_request(sample))
+    path, media_type = asyncio.run(service.converted(experiment.id, "texture", file_format))
+    assert media_type == f"image/{file_format}"
+    assert Image.open(path).format == file_format.upper()
+    assert asyncio.run(service.converted(experiment.id, "texture", file_format)) == (path, media_type)
+
+
+def test_an_output_that_is_not_there_says_what_is(service: Service, sample: Sample) -> None:
+    experiment = finished(service, a_request(sample))
+    with pytest.raises(NotFoundError, match="texture, crop"):
+        service.output(experiment.id, "nothing")
+
+
+def test_the_full_rendition_is_the_stored_file_and_small_ones_are_bounded(service: Service, tmp_path: Path) -> None:
+    pixels = np.random.default_rng(2).integers(0, 256, (300, 600, 3), dtype=np.uint8)
+    Image.fromarray(pixels).save(tmp_path / "large.png")
+    sample = service.add_sample(tmp_path / "large.png", None)
+    full, media_type = service.rendition(sample.id, None)
+    assert media_type == "image/png"
+    assert np.array_equal(imagecodecs.png_decode(full.read_bytes()), pixels)
+    small, media_type = service.rendition(sample.id, 200)
+    assert media_type == "image/jpeg"
+    assert Image.open(small).size == (256, 128)
+    shutil.rmtree(small.parent)
+    assert service.rendition(sample.id, 200)[0].exists()
+
+
+def test_a_texture_straight_from_a_file_leaves_nothing_behind(
+    service: Service, settings: Settings, photograph: Path, upload: Path
+) -> None:
+    parameters = {"seed": 4}
+    experiment = finished(service, NewExperiment("adsn", (NewInput(_copied(service, photograph).id),), parameters))
+    expected = service.output(experiment.id, "texture")[1].read_bytes()
+    service.cancel_or_delete(experiment.id, OWNER)
+    picture, media_type = asyncio.run(service.synthesize(upload, method="adsn", crop=None, parameters=parameters))
+    assert (picture, media_type) == (expected, "image/png")
+    assert files(settings) == set()
+    assert sum(service.counts().values()) == 0
+
+
+def test_a_refused_texture_straight_from_a_file_leaves_nothing_behind(
+    service: Service, settings: Settings, upload: Path
+) -> None:
+    with pytest.raises(InvalidInputError):
+        asyncio.run(service.synthesize(upload, method="rpn", crop=Rectangle(0, 0, 999, 9), parameters={}))
+    assert files(settings) == set()
+
+
+def test_a_caller_who_hangs_up_cancels_the_run(
+    settings: Settings, upload: Path, make_service: Callable[..., Service]
+) -> None:
+    service = make_service()
+
+    async def hanging_up() -> None:
+        work = asyncio.create_task(service.synthesize(upload, method="rpn", crop=None, parameters={}))
+        while service.waiting == 0:
+            await asyncio.sleep(0.005)
+        work.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await work
+
+    asyncio.run(hanging_up())
+    assert service.waiting == 0
+    assert files(settings) == set()
+
+
+def test_a_failed_run_says_why(service: Service, sample: Sample, monkeypatch: pytest.MonkeyPatch) -> None:
+    def failing(*_: object) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr("app.experiments.run.read_crop", failing)
+    experiment = finished(service, a_request(sample))
+    assert experiment.status is Status.FAILED
+    assert experiment.error is not None
+    assert "memory" in experiment.error
+    with pytest.raises(NotFoundError):
+        service.output(experiment.id, "texture")
+
+
+def test_pruning_removes_old_experiments_and_strays_only(service: Service, sample: Sample, settings: Settings) -> None:
+    experiment = finished(service, a_request(sample))
+    stray = settings.data_dir / "files" / "00" / ("00" * 32)
+    stray.parent.mkdir(exist_ok=True)
+    stray.write_bytes(b"stray")
+    kept = service.prune(timedelta(days=1))
+    assert (kept.experiments, kept.samples, kept.files) == (0, 0, 1)
+    gone = service.prune(timedelta(0))
+    assert gone.experiments == 1
+    with pytest.raises(DeletedError):
+        service.get(experiment.id)
+    assert files(settings) == set()
+
+
+def test_bundled_photographs_are_taken_in_once(settings: Settings, make_service: Callable[..., Service]) -> None:
+    settings = settings.model_copy(update={"samples_dir": Path("samples").resolve()})
+    first = make_service(settings)
+    first.start()
+    first._background[0].join()
+    found = first.bundled_samples()
+    assert len(found) >= 20
+    assert all(sample.bundled and sample.title for sample in found)
+    first.close()
+    second = make_service(settings)
+    second.start()
+    second._background[0].join()
+    assert second.bundled_samples() == found
+    assert second.prune(timedelta(0)).samples == 0
+
+
+def _copied(service: Service, photograph: Path) -> Sample:
+    return service.add_sample(Path(shutil.copy(photograph, photograph.with_suffix(".copy"))), None)
