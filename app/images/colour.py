@@ -16,7 +16,7 @@ LEVELS = 1 << 16
 FINE_LEVELS = 1 << 18  # of linear light, so that 16 bits near black come out right
 PROBES = 2048
 TOLERANCE = 1e-4
-ROW_PIXELS = 1 << 18
+ROW_PIXELS = 1 << 16  # what is converted at once stays in the cache between its passes
 
 
 def to_srgb(pixels: Pixels, profile: bytes | None) -> Pixels:
@@ -80,21 +80,21 @@ def _deep(pixels: Pixels, profile: bytes) -> Pixels:
     exact = _transform((probes / (LEVELS - 1)).astype(np.float32), profile, "rgb", target=linear)
     if abs(_summed(tables, probes) - exact).max() > TOLERANCE:
         return _transform(pixels, profile, "rgb", flags=NO_OPTIMISATION)
+    tables *= FINE_LEVELS - 1
+    tables[0] += 0.5  # for rounding
     encoded, result = _encoding(), np.empty(pixels.shape, np.uint16)
     step = max(1, ROW_PIXELS // pixels.shape[1])
     for y in range(0, len(pixels), step):
         light = _summed(tables, pixels[y : y + step])
-        light *= FINE_LEVELS - 1
-        light += 0.5
         np.clip(light, 0, FINE_LEVELS - 1, out=light)
-        result[y : y + step] = encoded[light.astype(np.int32)]
+        np.take(encoded, light.astype(np.int32), out=result[y : y + step], mode="clip")
     return result
 
 
 def _summed(tables: NDArray[np.float32], pixels: NDArray[Any]) -> NDArray[np.float32]:
-    light = np.take(tables[0], pixels[..., 0], axis=0)
-    light += np.take(tables[1], pixels[..., 1], axis=0)
-    light += np.take(tables[2], pixels[..., 2], axis=0)
+    light = np.take(tables[0], pixels[..., 0], axis=0, mode="clip")
+    light += np.take(tables[1], pixels[..., 1], axis=0, mode="clip")
+    light += np.take(tables[2], pixels[..., 2], axis=0, mode="clip")
     return light
 
 

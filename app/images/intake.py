@@ -1,5 +1,6 @@
 """Taking in an upload: a process that may be killed decodes it, and what is kept is a PNG file of our own making."""
 
+import atexit
 import json
 import os
 import socket
@@ -95,6 +96,7 @@ class DecodingServer:
 
 
 server = DecodingServer()
+atexit.register(server.stop)
 _turn = BoundedSemaphore(AT_ONCE)
 
 
@@ -118,7 +120,7 @@ def intake(path: Path, directory: Path, limits: Limits) -> Intake:
     UnsupportedFormatError, BrokenFileError, TooLargeError
         As `app.images.decode.decode`; also if decoding takes more seconds or more memory than the limits allow.
     BusyError
-        If others have been decoded for a minute and none came to an end.
+        If no turn came within a minute: only so many are decoded at once.
     """
     if not _turn.acquire(timeout=WAIT_SECONDS):
         raise BusyError("Many pictures are being read at the moment: try again in a minute.")
@@ -154,7 +156,7 @@ def _decoded(message: bytes, limits: Limits) -> dict[str, Any]:
     if said.get("ended") == "late":
         raise TooLargeError(
             f"Decoding this picture takes more than the {limits.seconds:g} seconds that it may: "
-            "save it as an ordinary (not progressive) JPEG or as PNG, and upload it again."
+            "make it smaller, or save it as an ordinary (not progressive) JPEG, and upload it again."
         )
     raise BrokenFileError(
         "The decoder failed on this file; it is probably damaged. "

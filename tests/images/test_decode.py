@@ -1,7 +1,9 @@
 """Uploads: every kind of the four formats is read at full depth, upright and in sRGB."""
 
 import io
+import struct
 from collections.abc import Callable
+from itertools import product
 from typing import Any
 
 import imagecodecs
@@ -133,6 +135,48 @@ def test_a_cmyk_jpeg_without_a_profile_shows_its_inks(read: Read) -> None:
     picture = read(saved(Image.fromarray(inks, "CMYK"), "jpeg", quality=100, subsampling=0))
     for place, colour in (((4, 4), (0, 255, 255)), ((28, 28), (0, 0, 0)), ((4, 28), (255, 255, 255))):
         np.testing.assert_allclose(picture.pixels[place].astype(int), colour, atol=3)
+
+
+def ink_profile() -> bytes:
+    """Make a printer's ICC profile (version 2, CMYK to Lab, two grid points an axis): cyan prints as Lab 50, 0, 0."""
+
+    def tag(name: bytes, content: bytes) -> bytes:
+        return name + bytes(4) + content
+
+    ramp = bytes(range(256))
+    lightness = [
+        0 if k else 255 if not (c or m or y) else 128 if not (m or y) else 64
+        for c, m, y, k in product((0, 1), repeat=4)
+    ]
+    grid = b"".join(bytes([each, 128, 128]) for each in lightness)
+    identity = b"".join(struct.pack(">i", 65536 * (i % 4 == 0)) for i in range(9))
+    table = tag(b"mft1", bytes([4, 3, 2, 0]) + identity + ramp * 4 + grid + ramp * 3)
+    table += bytes(-len(table) % 4)
+    white = tag(b"XYZ ", struct.pack(">iii", 63190, 65536, 54061))
+    start = 128 + 4 + 2 * 12
+    tags = struct.pack(">I4sII4sII", 2, b"A2B0", start, len(table), b"wtpt", start + len(table), len(white))
+    header = struct.pack(">II", start + len(table) + len(white), 0) + b"\x02\x10\0\0" + b"prtrCMYKLab " + bytes(12)
+    header += b"acsp" + bytes(28) + struct.pack(">iii", 63190, 65536, 54061) + bytes(48)
+    return header + tags + table + white
+
+
+@pytest.mark.parametrize("file_format", ["jpeg", "tiff"])
+def test_inks_with_a_profile_become_what_the_printer_prints(read: Read, file_format: str) -> None:
+    inks = np.zeros((32, 48, 4), np.uint8)
+    inks[:, 16:32, 0] = 255  # cyan
+    inks[:, 32:, 3] = 255  # black
+    picture = read(saved(Image.fromarray(inks, "CMYK"), file_format, icc_profile=ink_profile()))
+    white, cyan, black = (picture.pixels[:, x].astype(int) for x in (5, 24, 42))
+    assert white.min() >= 250
+    assert black.max() <= 5
+    # L* = 50 is 0.184 of white's light, and sRGB 119.
+    np.testing.assert_allclose(cyan, 119, atol=3)
+
+
+def test_inks_with_a_profile_for_light_are_shown_as_plain_inks(read: Read) -> None:
+    image = Image.new("CMYK", (16, 16), (255, 0, 0, 0))
+    picture = read(saved(image, "jpeg", icc_profile=LINEAR, quality=100))
+    np.testing.assert_allclose(picture.pixels[8, 8].astype(int), (0, 255, 255), atol=3)
 
 
 def test_a_phone_s_jpeg_with_a_second_picture_gives_the_first(read: Read, photograph: NDArray[np.uint8]) -> None:

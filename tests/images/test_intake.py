@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from PIL import Image
 
-from app.errors import AppError, BrokenFileError, TooLargeError, UnsupportedFormatError
+from app.errors import AppError, BrokenFileError, BusyError, TooLargeError, UnsupportedFormatError
 from app.images import intake as module
 from app.images.decode import Limits, decode
 from app.images.intake import intake
@@ -100,6 +100,18 @@ def test_no_byte_of_the_metadata_is_stored(tmp_path: Path, directory: Path) -> N
             names.append(data[at + 4 : at + 8])
             at += 12 + int.from_bytes(data[at : at + 4], "big")
         assert set(names) == {b"IHDR", b"sRGB", b"stRP", b"IDAT", b"IEND"}
+
+
+def test_the_server_forks_from_a_single_thread(directory: Path) -> None:
+    intake(SAMPLES / "tiles02.png", directory, Limits())
+    assert server_process().num_threads() == 1
+
+
+def test_those_who_wait_too_long_for_their_turn_are_told(directory: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(module, "_turn", threading.BoundedSemaphore(1))
+    monkeypatch.setattr(module, "WAIT_SECONDS", 0.01)
+    with module._turn, pytest.raises(BusyError, match="try again"):
+        intake(SAMPLES / "tiles02.png", directory, Limits())
 
 
 @pytest.mark.parametrize(
