@@ -13,7 +13,7 @@ from app.settings import Settings
 
 OWNER_COOKIE = "microtexture_owner"
 _COOKIE_SECONDS = 400 * 24 * 3600  # browsers keep no cookie for longer
-_TOKEN = re.compile(r"[A-Za-z0-9_-]{16,200}")
+_TOKEN = re.compile(r"[!-~]{1,512}")
 _Result = TypeVar("_Result")
 
 

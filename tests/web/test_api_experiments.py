@@ -74,6 +74,8 @@ def test_the_queue_tells_the_place(site, until):
             "inputs.0.crop.x",
         ),
         ({"parameters": {"alpha": 0.6}}, "parameters.alpha"),
+        ({"parameters": {"width": "40"}}, "parameters.width"),
+        ({"parameters": {"add_smooth": 1}}, "parameters.add_smooth"),
         ({"parameters": {"colour": "red"}}, "parameters.colour"),
         ({"parameters": {"seed": -1}}, "parameters.seed"),
         ({"parameters": {"width": 50, "add_smooth": True}}, "parameters.add_smooth"),

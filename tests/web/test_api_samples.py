@@ -1,10 +1,19 @@
 """``/api/v1/samples``."""
 
 import threading
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from io import BytesIO
 
+import httpx
 import pytest
 from PIL import Image
+
+from app.errors import BusyError
+from app.main import create_app
+
+MANY = 50  # more than the 40 threads that Starlette answers with
+PATIENCE = 20.0
 
 
 def test_an_upload_becomes_a_sample_with_a_location(site, picture):
@@ -80,16 +89,42 @@ def test_no_upload_leaves_its_temporary_file(site, picture):
     assert list((site.settings.data_dir / "incoming").iterdir()) == []
 
 
-def test_the_web_answers_while_an_upload_is_decoded(site, picture):
-    """The event loop never waits for a decoding."""
-    big = picture(900, 90, seed=5)
-    uploads = [threading.Thread(target=site.upload, args=[big]) for _ in range(6)]
-    for upload in uploads:
-        upload.start()
-    slowest = 0.0
-    while any(upload.is_alive() for upload in uploads):
-        slowest = max(slowest, site.client.get("/healthz").elapsed.total_seconds())
-    assert 0 < slowest < 0.5
+def test_uploads_that_are_decoded_hold_nobody_up(site, serving, picture, until):
+    """Neither the event loop nor the threads that answer the rest wait for them, however many there are."""
+
+    class Decoding:
+        ready = True
+        waiting = 0
+        begun = 0
+        go_on = threading.Event()
+
+        def start(self) -> None: ...
+
+        def close(self) -> None: ...
+
+        def counts(self) -> dict[str, int]:
+            return {}
+
+        def add_sample(self, upload, owner):
+            self.begun += 1
+            self.go_on.wait(PATIENCE)
+            raise BusyError("That was long.")
+
+    service, data = Decoding(), picture()
+    with (
+        serving(create_app(site.settings, service)) as url,
+        httpx.Client(timeout=PATIENCE, limits=httpx.Limits(max_connections=None), verify=False) as client,
+        ThreadPoolExecutor(MANY) as pool,
+    ):
+        send = partial(client.post, f"{url}/api/v1/samples", files={"file": ("a.png", data)})
+        uploads = [pool.submit(send) for _ in range(MANY)]
+        until(lambda: service.begun >= 4)
+        until(lambda: len(list((site.settings.data_dir / "incoming").iterdir())) == MANY)
+        for path in ("/healthz", "/readyz", "/metrics", "/api/v1/methods"):
+            assert client.get(f"{url}{path}").status_code == 200
+        assert not any(upload.done() for upload in uploads)
+        service.go_on.set()
+        assert {upload.result().status_code for upload in uploads} == {503}
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Header, Path, Query, Request
-from pydantic import ConfigDict, Field
+from pydantic import ConfigDict, Field, ValidationError
 from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
@@ -62,16 +62,27 @@ class ExperimentBody(Body):
         Raises
         ------
         InvalidInputError
-            If there is no such method.
+            If there is no such method, or a parameter has another JSON type than declared.
         """
         if self.method not in METHODS:
             raise InvalidInputError(
                 f"There is no method of this name. The methods are: {', '.join(METHODS)}.", "method"
             )
+        self._check_types()
         inputs = tuple(
             NewInput(source.sample, source.crop.rectangle() if source.crop else None) for source in self.inputs
         )
         return NewExperiment(self.method, inputs, self.parameters, self.listed)
+
+    def _check_types(self) -> None:
+        """Refuse ``"7"`` for 7: the service takes it, for forms and command lines have only text; JSON has numbers."""
+        try:
+            METHODS[self.method].params.model_validate(self.parameters, strict=True)
+        except ValidationError as error:
+            for fault in error.errors():
+                if fault["type"].endswith("_type"):
+                    field = ".".join(["parameters", *(str(part) for part in fault["loc"])])
+                    raise InvalidInputError(f"{fault['msg']}.", field) from None
 
 
 def require_json(request: Request) -> None:
@@ -83,7 +94,8 @@ def require_json(request: Request) -> None:
 
 def record_of(request: Request, service: Service, experiment: Experiment) -> ExperimentRecord:
     """Write the record, as of now."""
-    return ExperimentRecord.of(experiment, service.snapshot(experiment.id), base_url(request))
+    snapshot = None if experiment.status.finished else service.snapshot(experiment.id)
+    return ExperimentRecord.of(experiment, snapshot, base_url(request))
 
 
 _CREATED = {

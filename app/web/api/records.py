@@ -145,13 +145,18 @@ class ExperimentRecord(BaseModel):
     )
 
     @classmethod
-    def of(cls, experiment: Experiment, snapshot: Snapshot, base: str) -> "ExperimentRecord":
+    def of(cls, experiment: Experiment, snapshot: Snapshot | None, base: str) -> "ExperimentRecord":
+        """Make the record; the snapshot of an unfinished experiment says how far it is.
+
+        Where the snapshot is newer and finished, the record is not: what succeeded shows its outputs.
+        """
         url = f"{base}{API}/experiments/{experiment.id}"
-        status = experiment.status if experiment.status.finished else snapshot.status
+        if snapshot is None or snapshot.status.finished or experiment.status.finished:
+            snapshot = Snapshot(experiment.status, fraction=float(experiment.status is Status.SUCCEEDED))
         return cls(
             id=experiment.id,
-            status=status,
-            progress=1.0 if status is Status.SUCCEEDED else min(max(snapshot.fraction, 0.0), 1.0),
+            status=snapshot.status,
+            progress=snapshot.fraction,
             stage=snapshot.stage,
             position=snapshot.position,
             method=experiment.method,
@@ -165,7 +170,7 @@ class ExperimentRecord(BaseModel):
             parameters=dict(experiment.parameters),
             listed=experiment.listed,
             outputs=[OutputRecord.of(output, url) for output in experiment.outputs if output.listed],
-            timings=dict(experiment.timings),
+            timings={stage: round(seconds, 6) for stage, seconds in experiment.timings.items()},
             error=experiment.error,
             created_at=experiment.created_at,
             started_at=experiment.started_at,
