@@ -38,11 +38,12 @@ class Served:
     def finish(self, body: dict[str, Any]) -> dict[str, Any]:
         """Send an experiment and return its finished record."""
         answer = self.client.post("/api/v1/experiments", json=body, headers={"Prefer": "wait=60"})
-        answer.raise_for_status()
-        record: dict[str, Any] = answer.json()
+        while (record := answer.raise_for_status().json())["status"] in {"queued", "running"}:
+            time.sleep(0.05)
+            answer = self.client.get(record["url"])
         if record["status"] != "succeeded":
             raise RuntimeError(f"The experiment {record['status']}: {record['error']}")
-        return record
+        return dict(record)
 
 
 @contextmanager
