@@ -1,15 +1,12 @@
 """Uploads: every kind of the four formats is read at full depth, upright and in sRGB."""
 
 import io
-import struct
 from collections.abc import Callable
-from itertools import product
 from typing import Any
 
 import imagecodecs
 import numpy as np
 import pytest
-import tifffile
 from numpy.typing import NDArray
 from PIL import Image, ImageOps
 
@@ -18,10 +15,6 @@ from app.images.decode import Decoded, to_png
 Read = Callable[..., Decoded]
 Noise = Callable[..., NDArray[Any]]
 ORIENTATION = 0x0112
-D65 = (0.3127, 0.3290, 1.0)
-LINEAR = imagecodecs.cms_profile(
-    "rgb", gamma=1.0, whitepoint=D65, primaries=[0.64, 0.33, 1, 0.30, 0.60, 1, 0.15, 0.06, 1]
-)
 
 
 def saved(image: Image.Image, file_format: str, **options: Any) -> bytes:
@@ -30,21 +23,10 @@ def saved(image: Image.Image, file_format: str, **options: Any) -> bytes:
     return file.getvalue()
 
 
-def as_tiff(pixels: NDArray[Any], **options: Any) -> bytes:
-    file = io.BytesIO()
-    tifffile.imwrite(file, pixels, **options)
-    return file.getvalue()
-
-
 def oriented(orientation: int) -> Image.Exif:
     exif = Image.Exif()
     exif[ORIENTATION] = orientation
     return exif
-
-
-def srgb_of_linear(light: NDArray[Any]) -> NDArray[np.float64]:
-    """IEC 61966-2-1, of values from 0 to 1."""
-    return np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
 
 
 @pytest.mark.parametrize("mode", ["1", "L", "LA", "P", "RGB", "RGBA"])
@@ -137,48 +119,6 @@ def test_a_cmyk_jpeg_without_a_profile_shows_its_inks(read: Read) -> None:
         np.testing.assert_allclose(picture.pixels[place].astype(int), colour, atol=3)
 
 
-def ink_profile() -> bytes:
-    """Make a printer's ICC profile (version 2, CMYK to Lab, two grid points an axis): cyan prints as Lab 50, 0, 0."""
-
-    def tag(name: bytes, content: bytes) -> bytes:
-        return name + bytes(4) + content
-
-    ramp = bytes(range(256))
-    lightness = [
-        0 if k else 255 if not (c or m or y) else 128 if not (m or y) else 64
-        for c, m, y, k in product((0, 1), repeat=4)
-    ]
-    grid = b"".join(bytes([each, 128, 128]) for each in lightness)
-    identity = b"".join(struct.pack(">i", 65536 * (i % 4 == 0)) for i in range(9))
-    table = tag(b"mft1", bytes([4, 3, 2, 0]) + identity + ramp * 4 + grid + ramp * 3)
-    table += bytes(-len(table) % 4)
-    white = tag(b"XYZ ", struct.pack(">iii", 63190, 65536, 54061))
-    start = 128 + 4 + 2 * 12
-    tags = struct.pack(">I4sII4sII", 2, b"A2B0", start, len(table), b"wtpt", start + len(table), len(white))
-    header = struct.pack(">II", start + len(table) + len(white), 0) + b"\x02\x10\0\0" + b"prtrCMYKLab " + bytes(12)
-    header += b"acsp" + bytes(28) + struct.pack(">iii", 63190, 65536, 54061) + bytes(48)
-    return header + tags + table + white
-
-
-@pytest.mark.parametrize("file_format", ["jpeg", "tiff"])
-def test_inks_with_a_profile_become_what_the_printer_prints(read: Read, file_format: str) -> None:
-    inks = np.zeros((32, 48, 4), np.uint8)
-    inks[:, 16:32, 0] = 255  # cyan
-    inks[:, 32:, 3] = 255  # black
-    picture = read(saved(Image.fromarray(inks, "CMYK"), file_format, icc_profile=ink_profile()))
-    white, cyan, black = (picture.pixels[:, x].astype(int) for x in (5, 24, 42))
-    assert white.min() >= 250
-    assert black.max() <= 5
-    # L* = 50 is 0.184 of white's light, and sRGB 119.
-    np.testing.assert_allclose(cyan, 119, atol=3)
-
-
-def test_inks_with_a_profile_for_light_are_shown_as_plain_inks(read: Read) -> None:
-    image = Image.new("CMYK", (16, 16), (255, 0, 0, 0))
-    picture = read(saved(image, "jpeg", icc_profile=LINEAR, quality=100))
-    np.testing.assert_allclose(picture.pixels[8, 8].astype(int), (0, 255, 255), atol=3)
-
-
 def test_a_phone_s_jpeg_with_a_second_picture_gives_the_first(read: Read, photograph: NDArray[np.uint8]) -> None:
     first, second = Image.fromarray(photograph), Image.fromarray(photograph[::-1].copy())
     data = saved(first, "mpo", save_all=True, append_images=[second], quality=95)
@@ -237,66 +177,6 @@ def test_transparency_turns_with_the_picture(read: Read, noise: Noise) -> None:
 def test_an_impossible_orientation_is_ignored(read: Read, photograph: NDArray[np.uint8]) -> None:
     picture = read(saved(Image.fromarray(photograph), "png", exif=oriented(77)))
     np.testing.assert_array_equal(picture.pixels, photograph)
-
-
-@pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
-@pytest.mark.parametrize("channels", [1, 3])
-def test_a_linear_profile_is_converted_to_srgb_at_full_depth(
-    read: Read, noise: Noise, dtype: type, channels: int
-) -> None:
-    peak = np.iinfo(dtype).max
-    pixels = noise(16, 24, channels, dtype=dtype)
-    pixels[0, 0] = 0
-    pixels[0, 1] = peak
-    profile = imagecodecs.cms_profile("gray", gamma=1.0) if channels == 1 else LINEAR
-    picture = read(as_tiff(pixels, photometric="minisblack" if channels == 1 else "rgb", iccprofile=profile))
-    assert picture.pixels.dtype == dtype
-    # One step of 8 bits; of 16 bits a few, for profiles hold their numbers in 16 bits themselves.
-    expected = srgb_of_linear(pixels / peak) * peak
-    assert abs(picture.pixels - expected).max() <= (1 if dtype == np.uint8 else 8)
-
-
-def test_a_wide_profile_is_converted_as_the_exact_transform_does(read: Read, noise: Noise) -> None:
-    wide = imagecodecs.cms_profile(
-        "rgb", gamma=2.2, whitepoint=D65, primaries=[0.64, 0.33, 1, 0.21, 0.71, 1, 0.15, 0.06, 1]
-    )
-    pixels = noise(64, 64, 3, dtype=np.uint16)
-    exact = imagecodecs.cms_transform(
-        pixels,
-        wide,
-        imagecodecs.cms_profile("srgb"),
-        colorspace="rgb",
-        outcolorspace="rgb",
-        flags=imagecodecs.CMS.FLAGS.NOOPTIMIZE,
-    )
-    picture = read(as_tiff(pixels, photometric="rgb", iccprofile=wide))
-    assert abs(picture.pixels.astype(int) - exact).max() <= 8
-
-
-def test_a_profile_of_srgb_changes_nothing(read: Read, noise: Noise) -> None:
-    pixels = noise(32, 32, 3)
-    data = saved(Image.fromarray(pixels), "png", icc_profile=imagecodecs.cms_profile("srgb"))
-    assert abs(read(data).pixels.astype(int) - pixels).max() <= 1
-
-
-@pytest.mark.parametrize("file_format", ["png", "jpeg", "webp"])
-def test_profiles_are_found_in_every_format(read: Read, file_format: str) -> None:
-    image = Image.new("RGB", (16, 16), (55, 55, 55))
-    data = saved(image, file_format, icc_profile=LINEAR, quality=100)
-    expected = srgb_of_linear(np.array(55 / 255)) * 255
-    np.testing.assert_allclose(read(data).pixels.mean(), expected, atol=2)
-
-
-@pytest.mark.parametrize("profile", [b"broken", b"\0" * 500, imagecodecs.cms_profile("gray")])
-def test_a_broken_or_foreign_profile_is_ignored(read: Read, noise: Noise, profile: bytes) -> None:
-    pixels = noise(8, 8, 3)
-    np.testing.assert_array_equal(read(saved(Image.fromarray(pixels), "png", icc_profile=profile)).pixels, pixels)
-
-
-def test_a_profile_leaves_transparency_alone(read: Read, noise: Noise) -> None:
-    pixels = noise(8, 8, 4)
-    data = saved(Image.fromarray(pixels), "png", icc_profile=LINEAR)
-    np.testing.assert_array_equal(read(data).alpha, pixels[..., 3])
 
 
 def test_what_is_written_is_what_was_decoded(read: Read, noise: Noise) -> None:

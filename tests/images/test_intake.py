@@ -127,10 +127,8 @@ def test_a_refusal_leaves_no_file(tmp_path: Path, directory: Path, content: byte
 
 def test_a_picture_that_takes_too_long_is_killed(slow: Path, directory: Path) -> None:
     intake(SAMPLES / "tiles02.png", directory, Limits())
-    before = time.monotonic()
     with pytest.raises(TooLargeError, match=r"more than the 0\.5 seconds"):
         intake(slow, directory, Limits(seconds=0.5))
-    assert time.monotonic() - before < 5
     assert len(list(directory.iterdir())) == 1
     assert not server_process().children()
 
@@ -155,24 +153,27 @@ def test_several_are_taken_in_at_once(tmp_path: Path, directory: Path, noise: No
     assert len({each.path for each in stored}) == 12
 
 
-def test_a_slow_picture_does_not_hold_up_the_others(slow: Path, directory: Path) -> None:
+def test_a_slow_picture_does_not_hold_up_the_others_and_a_crash_is_told(slow: Path, directory: Path) -> None:
     with ThreadPoolExecutor(1) as pool:
-        hopeless = pool.submit(intake, slow, directory, Limits(seconds=3))
-        until(lambda: server_process().children())
+        hopeless = pool.submit(intake, slow, directory, Limits(seconds=60))
+        decoder = until(server_process().children)[0]
         intake(SAMPLES / "tiles02.png", directory, Limits())
         assert not hopeless.done()
-        with pytest.raises(TooLargeError):
+        decoder.kill()
+        with pytest.raises(BrokenFileError, match="decoder failed"):
             hopeless.result()
 
 
 def test_a_killed_server_is_started_again_and_its_children_die_with_it(slow: Path, directory: Path) -> None:
     with ThreadPoolExecutor(1) as pool:
-        hopeless = pool.submit(intake, slow, directory, Limits(seconds=2))
+        hopeless = pool.submit(intake, slow, directory, Limits(seconds=60))
         first = server_process()
-        child = until(first.children)[0]
+        decoder = until(first.children)[0]
         first.kill()
-        until(lambda: not child.is_running() or child.status() == psutil.STATUS_ZOMBIE)
-        with pytest.raises(TooLargeError):  # it was tried once more, by a new server
+        until(lambda: not decoder.is_running() or decoder.status() == psutil.STATUS_ZOMBIE)
+        # The picture is tried once more, by a new server.
+        until(lambda: server_process().children())[0].kill()
+        with pytest.raises(BrokenFileError):
             hopeless.result()
     assert server_process().pid != first.pid
     server_process().kill()
@@ -228,7 +229,7 @@ def files() -> dict[str, bytes]:
 
 
 @pytest.mark.parametrize("file_format", ["png", "jpeg", "webp", "tiff"])
-@settings(max_examples=40, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=25, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_damaged_files_are_read_or_refused_and_harm_nothing(
     tmp_path: Path, directory: Path, files: dict[str, bytes], file_format: str, data: st.DataObject
