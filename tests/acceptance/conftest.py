@@ -1,4 +1,4 @@
-"""A real server process with its data in a temporary directory, and a real browser that notes every complaint of a page."""
+"""A real server process with its data in a temporary directory, and a real browser that notes every complaint."""
 
 import base64
 import json
@@ -17,12 +17,12 @@ import httpx
 import numpy as np
 import pytest
 from PIL import Image
-from playwright.sync_api import Browser, BrowserContext, Page, Playwright, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Page, Playwright, expect, sync_playwright
 
 ROOT = Path(__file__).resolve().parents[2]
 SAMPLES = ROOT / "samples"
 SCREENSHOTS = Path(__file__).parent / "screenshots"
-PATIENCE = 30.0
+PATIENCE = 60.0
 CHROMIUM = os.environ.get("CHROMIUM", "/usr/bin/chromium")
 ARGUMENTS = [
     "--headless",
@@ -61,7 +61,9 @@ class Site:
     url: str
     client: httpx.Client = field(repr=False)
 
-    def run(self, sample: str, crop: tuple[int, int, int, int], method: str = "rpn", **parameters: Any) -> dict[str, Any]:
+    def run(
+        self, sample: str, crop: tuple[int, int, int, int], method: str = "rpn", **parameters: Any
+    ) -> dict[str, Any]:
         """Run an experiment to its end; its record."""
         x, y, width, height = crop
         source = {"sample": sample, "crop": {"x": x, "y": y, "width": width, "height": height}}
@@ -96,9 +98,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
         with httpx.Client(base_url=f"http://127.0.0.1:{port}", timeout=PATIENCE + 5) as client:
             until(lambda: process.poll() is not None or _responds(client, "/readyz"), "a server that is ready")
             assert process.poll() is None, (directory / "server.log").read_text()
-            until(
-                lambda: len(client.get("/api/v1/samples").json()["samples"]) == len(catalogue), "the bundled samples"
-            )
+            until(lambda: len(client.get("/api/v1/samples").json()["samples"]) == len(catalogue), "the bundled samples")
             yield Site(f"http://127.0.0.1:{port}", client)
     finally:
         process.terminate()
@@ -114,6 +114,7 @@ def experiment(site: Site) -> dict[str, Any]:
 
 @pytest.fixture(scope="session")
 def playwright() -> Iterator[Playwright]:
+    expect.set_options(timeout=PATIENCE * 1000)
     with sync_playwright() as started:
         yield started
 
@@ -127,7 +128,7 @@ def browser(playwright: Playwright) -> Iterator[Browser]:
 
 @dataclass
 class Visitors:
-    """Opens pages; ``complaints`` are the errors that browsers logged on them, those of Content-Security-Policy among them."""
+    """Opens pages; ``complaints`` are what browsers logged on them: errors, and breaches of the security policy."""
 
     browser: Browser
     url: str
