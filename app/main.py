@@ -25,6 +25,7 @@ from app.web.metrics import CountRequests, Metrics
 from app.web.openapi import document
 from app.web.origin import CrossOrigin
 from app.web.security import SecurityHeaders
+from app.web.stopping import on_stop_signal
 from app.worker import run_job
 
 log = logging.getLogger(__name__)
@@ -72,6 +73,7 @@ def create_app(settings: Settings | None = None, service: Service | None = None)
         ],
     )
     app.state.settings, app.state.service, app.state.metrics = settings, service, metrics
+    app.state.stopping = asyncio.Event()
     app.state.upload_threads = anyio.CapacityLimiter(UPLOADS_AT_ONCE)
     problems.install(app, pages.render_error)
     for part in (methods, samples, experiments, events, outputs, synthesize, health, docs, pages):
@@ -88,7 +90,10 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     service: Service = app.state.service
     starting = asyncio.create_task(asyncio.to_thread(service.start))
     starting.add_done_callback(_log_failure)
-    yield
+    loop, stopping = asyncio.get_running_loop(), app.state.stopping
+    with on_stop_signal(lambda: loop.call_soon_threadsafe(stopping.set)):
+        yield
+    stopping.set()
     with suppress(Exception):
         await starting
     await asyncio.to_thread(service.close)

@@ -1,8 +1,15 @@
 """``/api/v1/experiments/{id}/events``, over a real socket."""
 
 import json
+import signal
+import socket
+import subprocess
+import sys
 
+import httpx
 import pytest
+
+from app.settings import ROOT
 
 
 def events(response):
@@ -81,3 +88,48 @@ def test_head_of_a_stream_ends_at_once(site):
 def test_an_unknown_experiment_is_not_found(site, path):
     response = site.client.get(f"/api/v1/experiments/{path}/events")
     assert (response.status_code, response.headers["Content-Type"]) == (404, "application/problem+json")
+
+
+def test_a_server_that_is_told_to_stop_ends_its_streams(tmp_path, until):
+    """Over the real command: with a stream open it is gone long before it would be killed, and no error is logged."""
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        port = listener.getsockname()[1]
+    program = f"""
+import asyncio
+import uvicorn
+from app.experiments.model import Snapshot, Status
+from app.main import create_app
+from app.settings import Settings
+
+class Waiting:
+    ready = True
+    def start(self): pass
+    def close(self): print("closed", flush=True)
+    def get(self, experiment_id): pass
+    async def watch(self, experiment_id):
+        yield Snapshot(Status.QUEUED, position=1)
+        await asyncio.Event().wait()
+
+uvicorn.run(create_app(Settings(), Waiting()), port={port}, log_level="warning")
+"""
+    process = subprocess.Popen(
+        [sys.executable, "-c", program], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    try:
+        until(lambda: process.poll() is not None or answers(port))
+        with httpx.stream("GET", f"http://127.0.0.1:{port}/api/v1/experiments/x/events", timeout=20) as response:
+            stream = events(response)
+            assert next(stream)["data"]["position"] == 1
+            process.send_signal(signal.SIGTERM)
+            assert [event["event"] for event in stream] == ["status"]
+        output, errors = process.communicate(timeout=20)
+    finally:
+        process.kill()
+    assert (output, errors) == ("closed\n", "")
+
+
+def answers(port):
+    try:
+        return httpx.get(f"http://127.0.0.1:{port}/healthz").is_success
+    except httpx.TransportError:
+        return False

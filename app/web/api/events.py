@@ -4,7 +4,7 @@ from collections.abc import AsyncGenerator, AsyncIterator
 from contextlib import aclosing
 from typing import Annotated, cast
 
-from fastapi import APIRouter, Depends, Header
+from fastapi import APIRouter, Depends, Header, Request
 from fastapi.sse import EventSourceResponse, ServerSentEvent
 from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
@@ -14,6 +14,7 @@ from app.web.api.experiments import ExperimentId
 from app.web.api.records import API
 from app.web.deps import ServiceDep
 from app.web.openapi import problems
+from app.web.stopping import unless_stopping
 
 router = APIRouter(prefix=f"{API}/experiments", tags=["experiments"])
 
@@ -42,14 +43,18 @@ async def _followable(
     response_class=EventSourceResponse,
     responses={204: {"description": "You have seen the end (`Last-Event-ID`)."}, **problems(404, 410, 422)},
 )
-async def experiment_events(experiment_id: ExperimentId, service: ServiceDep) -> AsyncIterator[ServerSentEvent]:
-    """Server-sent events: `status` with `{"status", "position"}` at first and whenever that changes, `progress` with
-    `{"progress", "stage", "position", "elapsed"}`. The stream ends after a finished status.
-    """  # noqa: D205 -- OpenAPI shows it as one paragraph
+async def experiment_events(
+    experiment_id: ExperimentId, request: Request, service: ServiceDep
+) -> AsyncIterator[ServerSentEvent]:
+    """Send an event `progress` for every change, and an event `status` after it whenever the status is another.
+
+    The data of both is `{"status", "position", "progress", "stage", "elapsed"}`. The stream ends after a finished status,
+    or when the server stops: connect again then.
+    """
     status: Status | None = None
     number = 0
     async with aclosing(cast("AsyncGenerator[Snapshot]", service.watch(experiment_id))) as snapshots:
-        async for snapshot in snapshots:
+        while snapshot := await unless_stopping(request, _next(snapshots)):
             data = {
                 "status": snapshot.status,
                 "position": snapshot.position,
@@ -65,3 +70,7 @@ async def experiment_events(experiment_id: ExperimentId, service: ServiceDep) ->
                 yield ServerSentEvent(
                     event=name, id=identifier, retry=RETRY_MILLISECONDS if number == 1 else None, data=data
                 )
+
+
+async def _next(snapshots: AsyncGenerator[Snapshot]) -> Snapshot | None:
+    return await anext(snapshots, None)

@@ -18,6 +18,7 @@ from app.web.api.prefer import LONGEST, wait_seconds
 from app.web.api.records import API, IDENTIFIER, Body, ExperimentList, ExperimentRecord, InputBody, ListedBody
 from app.web.deps import ServiceDep, TokenDep, base_url, remember_owner
 from app.web.openapi import EXAMPLE_METHOD, EXAMPLE_SAMPLE, OWNER, parameters_schema, problems
+from app.web.stopping import unless_stopping
 
 router = APIRouter(prefix=f"{API}/experiments", tags=["experiments"])
 
@@ -146,7 +147,7 @@ async def submit_experiment(
         raise InvalidInputError(error.message, "inputs") from None
     seconds = wait_seconds(prefer)
     if seconds is not None:
-        experiment = await service.wait(experiment.id, seconds)
+        experiment = await unless_stopping(request, service.wait(experiment.id, seconds)) or experiment
         response.headers["Preference-Applied"] = f"wait={seconds}"
     record = await run_in_threadpool(record_of, request, service, experiment)
     response.status_code = 201 if record.status.finished else 202
