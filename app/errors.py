@@ -1,4 +1,4 @@
-"""What can go wrong, by meaning. How each is answered over HTTP is decided in `app.web.problems`, over the shell in `app.cli`."""
+"""What can go wrong, by meaning. `app.web.problems` decides how it is answered, `app.cli.problems` how it is printed."""
 
 
 class AppError(Exception):

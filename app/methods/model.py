@@ -1,6 +1,6 @@
 """What a method declares, and what it is given and gives back.
 
-A method of the registry is declared once; its form, its API schema, its CLI options and its page come from that declaration.
+A method is declared once; its form, its API schema, its command line options and its page come from that.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -19,8 +19,8 @@ class StillParams(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    width: int | None = Field(None, ge=1, title="Width", description="Pixels of the texture; default: the crop's width.")
-    height: int | None = Field(None, ge=1, title="Height", description="Pixels of the texture; default: the crop's height.")
+    width: int | None = Field(None, ge=1, title="Width", description="Pixels of the texture; default: as the crop.")
+    height: int | None = Field(None, ge=1, title="Height", description="Pixels of the texture; default: as the crop.")
     seed: int = Field(
         0,
         ge=0,
@@ -33,7 +33,7 @@ class StillParams(BaseModel):
 class Progress(Protocol):
     """What a method calls between pieces of work; it raises when the experiment is cancelled or out of time.
 
-    ``stage`` is a short lower-case name (``"periodic component"``), ``fraction`` the part of the whole run that is done, 0–1.
+    ``stage`` is a short lower-case name (``"periodic component"``), ``fraction`` the part of the run that is done, 0–1.
     The time from one stage's first call to the next stage's is that stage's time in the record.
     """
 
@@ -112,7 +112,8 @@ class Method:
         One line each; the summary says what it computes.
     inputs : tuple of Slot
     params : type of pydantic.BaseModel
-        Every field has a title, a description and a default; ``json_schema_extra={"advanced": True}`` puts it under "advanced".
+        Every field has a title, a description and a default; ``json_schema_extra={"advanced": True}`` puts it
+        under "advanced".
     references : tuple of Reference
         The main one first.
     check : callable ``(sizes, params) -> None``
