@@ -1,4 +1,4 @@
-"""What can go wrong, by meaning. `app.web.problems` decides how it is answered, `app.cli.problems` how it is printed."""
+"""What can go wrong, by meaning. `app.web.problems` says how it is answered, `app.cli.problems` how it is printed."""
 
 
 class AppError(Exception):
