@@ -1,0 +1,87 @@
+"""Forms come from what a method declares, and what is submitted becomes parameters or messages at the fields."""
+
+from typing import Literal
+
+import pytest
+from pydantic import Field
+
+from app.methods.fields import fields, requirement
+from app.methods.model import Method, StillParams
+from app.methods.registry import METHODS
+from app.web.forms import SHARED, form_name, own_fields, parse
+
+
+class Params(StillParams):
+    """Every kind of parameter."""
+
+    scale: float = Field(0.5, gt=0, le=2, title="Scale", description="How large.", json_schema_extra={"advanced": True})
+    levels: int | None = Field(None, ge=1, title="Levels", description="How many; default: as many as fit.")
+    kind: Literal["one", "two"] = Field("two", title="Kind", description="Which.")
+    exact: bool = Field(True, title="Exact", description="Whether.")
+
+
+@pytest.fixture
+def method() -> Method:
+    return Method("test", "Test", "Tests.", (), Params, (), lambda sizes, params: None, lambda *given: iter(()))
+
+
+def test_every_kind_of_parameter_becomes_a_field() -> None:
+    found = {field.name: field for field in fields(Params)}
+    assert [found[name].kind for name in ("scale", "levels", "kind", "exact")] == [
+        "number",
+        "integer",
+        "choice",
+        "switch",
+    ]
+    assert found["scale"].advanced
+    assert (found["scale"].minimum, found["scale"].maximum, found["scale"].default) == ("0", "2", "0.5")
+    assert (found["levels"].minimum, found["levels"].default) == ("1", "")
+    assert found["kind"].choices == ("one", "two")
+    assert found["exact"].default == "on"
+
+
+def test_shared_parameters_are_asked_once(method: Method) -> None:
+    assert [field.name for field in own_fields(method)] == ["scale", "levels", "kind", "exact"]
+    assert form_name(method, "seed") == "seed"
+    assert form_name(method, "scale") == "test.scale"
+
+
+def test_submitted_texts_become_parameters(method: Method) -> None:
+    submitted = {
+        "seed": "7",
+        "width": "",
+        "test.scale": " 1.25 ",
+        "test.kind": "one",
+        "test.exact": "on",
+        "other.scale": "9",
+    }
+    parsed = parse(method, submitted)
+    assert parsed.errors == {}
+    assert parsed.parameters == {"seed": 7, "scale": 1.25, "kind": "one", "exact": True}
+
+
+def test_a_switch_that_is_not_sent_is_off(method: Method) -> None:
+    assert parse(method, {}).parameters == {"exact": False}
+
+
+def test_every_field_at_fault_gets_its_own_message(method: Method) -> None:
+    parsed = parse(method, {"seed": "-1", "test.scale": "wide", "test.levels": "2.5", "test.kind": "three"})
+    assert set(parsed.errors) == {"seed", "test.scale", "test.levels", "test.kind"}
+    assert parsed.errors["test.kind"] == "Kind is one of: one, two."
+    assert parsed.errors["test.levels"] == "Levels is a whole number from 1 on."
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_every_method_has_a_complete_form(name: str) -> None:
+    """A label and a help for each field, a default that the method itself takes, and a sentence for a wrong value."""
+    method = METHODS[name]
+    declared = fields(method.params)
+    assert set(SHARED) <= {field.name for field in declared}
+    for field in declared:
+        assert field.label != field.name
+        assert field.help
+        assert requirement(field).endswith(".")
+    submitted = {form_name(method, field.name): field.default for field in declared}
+    parsed = parse(method, submitted)
+    assert parsed.errors == {}
+    assert method.params(**parsed.parameters) == method.params()

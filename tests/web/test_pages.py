@@ -1,0 +1,248 @@
+"""Home, sample, archive and error pages as the server writes them."""
+
+import re
+from collections.abc import Callable
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+
+CROP = {"crop.x": "4", "crop.y": "6", "crop.width": "20", "crop.height": "16"}
+FORM = {"sample": "gravel_gray", **CROP, "method": "rpn", "size": "1", "seed": "3", "rpn.alpha": "0.1"}
+
+
+class Page(HTMLParser):
+    """The parts of a page that tests look at."""
+
+    def __init__(self, html: str) -> None:
+        super().__init__()
+        self.elements: list[tuple[str, dict[str, str]]] = []
+        self.title = ""
+        self._within = ""
+        self.feed(html)
+
+    def handle_starttag(self, tag: str, attributes: list[tuple[str, str | None]]) -> None:
+        self.elements.append((tag, {name: value or "" for name, value in attributes}))
+        self._within = tag
+
+    def handle_data(self, data: str) -> None:
+        if self._within == "title":
+            self.title += data
+
+    def handle_endtag(self, tag: str) -> None:
+        self._within = ""
+
+    def all(self, tag: str, **wanted: str) -> list[dict[str, str]]:
+        return [
+            attributes
+            for name, attributes in self.elements
+            if name == tag and all(attributes.get(key) == value for key, value in wanted.items())
+        ]
+
+    def value(self, name: str) -> str:
+        return self.all("input", name=name)[0]["value"]
+
+
+def get(site: Any, path: str) -> Page:
+    answer = site.client.get(path)
+    assert answer.status_code == 200, answer.text
+    return Page(answer.text)
+
+
+PAGES = ["/", "/samples/gravel_gray", "/archive", "/archive?method=adsn", "/nothing-here"]
+
+
+@pytest.mark.parametrize("path", PAGES)
+def test_pages_have_no_inline_script_or_style(site: Any, path: str) -> None:
+    """Only what the Content-Security-Policy lets through, and nothing from elsewhere."""
+    page = Page(site.client.get(path).text)
+    assert all("src" in script for script in page.all("script"))
+    assert not page.all("style")
+    for tag, attributes in page.elements:
+        assert "style" not in attributes, tag
+        assert not any(name.startswith("on") for name in attributes), tag
+        if tag in {"script", "img", "link"}:
+            assert (attributes.get("src") or attributes.get("href", "")).startswith("/"), attributes
+
+
+@pytest.mark.parametrize("path", PAGES)
+def test_pages_have_landmarks_and_a_title(site: Any, path: str) -> None:
+    page = Page(site.client.get(path).text)
+    assert page.title.endswith(" · Microtexture")
+    assert [len(page.all(tag)) for tag in ("main", "header", "h1")] == [1, 1, 1]
+    assert page.all("a", **{"class": "skip"})[0]["href"] == "#main"
+
+
+def test_titles_say_what_is_on_the_page(site: Any) -> None:
+    titles = [Page(site.client.get(path).text).title for path in PAGES]
+    assert len(set(titles)) == len(titles)
+
+
+def test_every_static_file_a_page_names_is_there(site: Any) -> None:
+    for path in PAGES:
+        for tag, attributes in Page(site.client.get(path).text).elements:
+            name = attributes.get("src") or attributes.get("href", "")
+            if tag in {"script", "link", "img"} and name.startswith("/static/"):
+                assert site.client.get(name).status_code == 200, name
+
+
+def test_home_shows_samples_and_newest_results(site: Any, experiment: dict[str, Any]) -> None:
+    page = get(site, "/")
+    assert page.all("a", href="/samples/gravel_gray")
+    assert page.all("a", href=f"/experiments/{experiment['id']}")
+    for image in page.all("img"):
+        assert site.client.get(image["src"]).status_code == 200
+
+
+def test_an_upload_by_form_leads_to_the_sample(site: Any, picture: Callable[..., bytes]) -> None:
+    with site.visitor() as visitor:
+        answer = visitor.post("/samples", files={"file": ("photo.png", picture(48, 40))})
+        assert answer.status_code == 303
+        assert "microtexture_owner" in visitor.cookies
+        page = Page(visitor.get(answer.headers["location"]).text)
+    assert [page.value(name) for name in CROP] == ["0", "0", "48", "40"]
+
+
+def test_a_large_photograph_starts_with_its_middle(site: Any, picture: Callable[..., bytes]) -> None:
+    sample = site.upload(picture(700, 90, mode="L"))
+    page = get(site, f"/samples/{sample['id']}")
+    assert [page.value(name) for name in CROP] == ["94", "0", "512", "90"]
+
+
+@pytest.mark.parametrize(
+    ("data", "status"),
+    [(b"This is text.", 415), (b"", 422), (bytes(1 << 19), 413)],
+    ids=["not a picture", "no file", "too many bytes"],
+)
+def test_a_refused_upload_shows_the_form_again_with_a_message(site: Any, data: bytes, status: int) -> None:
+    files = {"file": ("photo.png" if data else "", data)}
+    answer = site.client.post("/samples", files=files)
+    assert answer.status_code == status
+    page = Page(answer.text)
+    assert page.title.startswith("Error")
+    message = re.search(r'id="upload-error"[^>]*>([^<]+)<', answer.text)
+    assert message is not None
+    assert page.all("p", id="upload-error")[0]["role"] == "alert"
+
+
+def test_the_address_of_a_sample_page_fills_its_form(site: Any) -> None:
+    query = "crop=1,2,30,31&method=adsn&width=100&height=90&seed=5&alpha=0.25&window=gaussian&add_smooth=on"
+    page = get(site, f"/samples/gravel_gray?{query}")
+    assert [page.value(name) for name in CROP] == ["1", "2", "30", "31"]
+    assert "checked" in page.all("input", id="method-adsn")[0]
+    assert page.value("seed") == "5"
+    assert page.value("adsn.alpha") == "0.25"
+    assert "checked" in page.all("input", name="adsn.add_smooth")[0]
+    assert "checked" not in page.all("input", name="rpn.add_smooth")[0]
+    assert "selected" in page.all("option", value="free")[0]
+
+
+def test_a_wrong_address_opens_the_suggested_crop(site: Any) -> None:
+    page = get(site, "/samples/gravel_gray?crop=1,2,999,31&method=none&size=7")
+    assert [page.value(name) for name in CROP] == ["8", "8", "32", "32"]
+
+
+def test_a_submitted_form_becomes_an_experiment(site: Any) -> None:
+    answer = site.client.post("/experiments", data={**FORM, "size": "1.5", "unlisted": "on"})
+    assert answer.status_code == 303
+    record = site.client.get("/api/v1" + answer.headers["location"]).json()
+    assert record["inputs"][0]["crop"] == {"x": 4, "y": 6, "width": 20, "height": 16}
+    assert (record["parameters"]["width"], record["parameters"]["height"], record["parameters"]["seed"]) == (30, 24, 3)
+    assert record["listed"] is False
+
+
+@pytest.mark.parametrize(
+    ("changed", "field", "words"),
+    [
+        ({"crop.x": "60"}, "crop", "reaches outside the photograph"),
+        ({"crop.width": "abc"}, "crop", "four whole numbers"),
+        ({"seed": "-1"}, "seed", "Seed is a whole number"),
+        ({"rpn.alpha": "0.9"}, "rpn-alpha", "from 0 to 0.5"),
+        ({"rpn.add_smooth": "on", "size": "2"}, "rpn-add_smooth", "smooth component"),
+        ({"size": "7"}, "size", "Choose one of the sizes"),
+        ({"method": "none"}, "method", "Choose a method"),
+    ],
+)
+def test_a_refused_form_says_why_at_the_field(site: Any, changed: dict[str, str], field: str, words: str) -> None:
+    """With what was typed kept, and the message part of the field's description."""
+    answer = site.client.post("/experiments", data=FORM | changed)
+    assert answer.status_code == 422
+    message = re.search(rf'id="{field}-error">([^<]*)<', answer.text)
+    assert message is not None
+    assert words in message[1]
+    page = Page(answer.text)
+    assert page.title.startswith("Error")
+    targets = {attributes["id"] for _, attributes in page.elements if "id" in attributes}
+    links = [link["href"] for link in page.all("a") if link["href"].startswith("#") and link["href"] != "#main"]
+    assert links
+    assert {link[1:] for link in links} <= targets
+    for name, value in changed.items():
+        if name not in {"method", "size"} and value != "on":
+            assert page.value(name) == value
+    if field not in {"method", "size"}:
+        described = [a for _, a in page.elements if f"{field}-error" in a.get("aria-describedby", "")]
+        assert described
+
+
+def test_a_full_queue_keeps_the_form(serve: Callable[..., Any], tmp_path: Path) -> None:
+    """With 503 and the words of the service; the same form can be sent again."""
+    with serve(tmp_path, queue_limit=1) as site, site.gate.closed():
+        answers = [site.client.post("/experiments", data=FORM) for _ in range(3)]
+        assert answers[-1].status_code == 503
+        assert Page(answers[-1].text).value("seed") == "3"
+        assert "All hands are busy" in answers[-1].text
+
+
+def test_the_archive_filters_and_pages(site: Any) -> None:
+    """Older and newer lead there and back."""
+    with site.visitor() as visitor:
+        for seed in range(26):
+            site.run(parameters={"seed": seed}, client=visitor)
+    first = get(site, "/archive?method=rpn")
+    assert len(first.all("a", **{"class": "pair"})) == 24
+    assert not first.all("a", rel="prev")
+    second = get(site, first.all("a", rel="next")[0]["href"])
+    shown = {link["href"] for link in second.all("a", **{"class": "pair"})}
+    assert shown
+    assert shown.isdisjoint(link["href"] for link in first.all("a", **{"class": "pair"}))
+    assert second.all("a", rel="prev")[0]["href"] == "/archive?method=rpn"
+    assert site.run(method="adsn").json()["status"] == "succeeded"
+    adsn = Page(site.client.get("/archive?method=adsn").text)
+    pairs = adsn.all("a", **{"class": "pair"})
+    assert pairs
+    assert not shown & {link["href"] for link in pairs}
+
+
+def test_an_empty_archive_says_so(serve: Callable[..., Any], tmp_path: Path) -> None:
+    with serve(tmp_path) as site:
+        assert "Nothing has been published here yet." in site.client.get("/archive").text
+        assert "Nothing has been synthesised here yet." in site.client.get("/").text
+
+
+@pytest.mark.parametrize(
+    ("path", "status", "words"),
+    [("/nothing", 404, "There is nothing here"), ("/experiments/unknown", 404, "There is nothing here")],
+)
+def test_errors_are_pages(site: Any, path: str, status: int, words: str) -> None:
+    answer = site.client.get(path)
+    assert answer.status_code == status
+    assert answer.headers["content-type"].startswith("text/html")
+    assert words in answer.text
+    assert Page(answer.text).all("a", href="/archive")
+
+
+def test_texts_of_visitors_are_escaped(site: Any) -> None:
+    answer = site.client.post("/experiments", data=FORM | {"seed": '"><script>alert(1)</script>'})
+    assert "<script>alert" not in answer.text
+
+
+def test_reloading_a_refused_form_leads_on(site: Any) -> None:
+    assert site.client.get("/experiments").headers["location"] == "/archive"
+
+
+def test_a_sample_that_is_gone_is_not_found(site: Any) -> None:
+    assert site.client.get("/samples/unknown").status_code == 404
+    answer: httpx.Response = site.client.post("/experiments", data=FORM | {"sample": "unknown"})
+    assert answer.status_code == 404

@@ -1,0 +1,136 @@
+"""The page of an experiment in its states, as the server writes it, and what its buttons do."""
+
+import re
+from typing import Any
+
+import pytest
+
+
+def page_of(site: Any, record: dict[str, Any], query: str = "") -> str:
+    answer = site.client.get(f"/experiments/{record['id']}{query}")
+    assert answer.status_code == 200
+    return str(answer.text)
+
+
+def test_the_finished_page_shows_pictures_record_and_links(site: Any, experiment: dict[str, Any]) -> None:
+    text = page_of(site, experiment)
+    address = f"/api/v1/experiments/{experiment['id']}/outputs"
+    for name in ("crop", "texture"):
+        assert f'<img src="{address}/{name}"' in text
+    for part in ("Time by stage", "Run again", "ADSN at the same phase", "New seed", "toroidal"):
+        assert part in text
+
+
+def test_every_download_is_a_file(site: Any, experiment: dict[str, Any]) -> None:
+    found = re.findall(r'<a class="button" href="(/api/v1/[^"]+)">', page_of(site, experiment))
+    kinds = [site.client.get(address.replace("&amp;", "&")).headers["content-type"] for address in found]
+    assert kinds == ["image/png", "image/png", "image/jpeg", "image/webp", "image/tiff", "application/zip"]
+
+
+def test_the_link_preview_is_the_pair_of_pictures(site: Any, experiment: dict[str, Any]) -> None:
+    preview = re.search(r'property="og:image" content="([^"]+)"', page_of(site, experiment))
+    assert preview is not None
+    assert preview[1].startswith(site.url)
+    assert site.client.get(preview[1]).headers["content-type"] == "image/jpeg"
+
+
+@pytest.mark.parametrize(("view", "count"), [("side", 2), ("flip", 2), ("tiled", 8), ("tiled&tiles=3", 18)])
+def test_views_are_pictures_without_a_script(site: Any, experiment: dict[str, Any], view: str, count: int) -> None:
+    text = page_of(site, experiment, f"?view={view}")
+    stages = text.split('class="panes')[1].split("<template")[0]
+    assert stages.count("<img ") == count
+
+
+def test_steps_are_all_outputs(site: Any, experiment: dict[str, Any]) -> None:
+    text = page_of(site, experiment, "?view=steps")
+    steps = text.split('class="steps"')[1].split("</ul>")[0]
+    assert steps.count("<img ") == len(experiment["outputs"])
+
+
+def test_a_waiting_experiment_looks_again_without_a_script(site: Any) -> None:
+    with site.gate.closed():
+        record = site.run(wait=False).json()
+        text = page_of(site, record)
+        assert '<noscript><meta http-equiv="refresh"' in text
+        assert 'role="progressbar"' in text
+        assert "Cancel" in text
+        with site.visitor() as stranger:
+            assert "Cancel" not in stranger.get(f"/experiments/{record['id']}").text
+        assert site.client.post(f"/experiments/{record['id']}/cancel").status_code == 303
+    text = page_of(site, record)
+    assert "Cancelled" in text
+    assert "refresh" not in text
+
+
+def test_cancelling_what_finished_deletes_nothing(site: Any) -> None:
+    record = site.finished()
+    site.client.post(f"/experiments/{record['id']}/cancel")
+    assert "Time by stage" in page_of(site, record)
+
+
+def test_only_its_owner_sees_and_may_use_the_owners_buttons(site: Any) -> None:
+    record = site.finished()
+    address = f"/experiments/{record['id']}"
+    with site.visitor() as stranger:
+        assert "Delete it" not in stranger.get(address).text
+        assert stranger.post(f"{address}/delete").status_code == 403
+        assert stranger.post(f"{address}/unlist").status_code == 403
+    assert "Delete it" in page_of(site, record)
+    site.client.post(f"{address}/unlist")
+    assert 'content="noindex"' in page_of(site, record)
+    site.client.post(f"{address}/list")
+    assert 'content="noindex"' not in page_of(site, record)
+    assert site.client.post(f"{address}/delete").headers["location"] == "/archive"
+    gone = site.client.get(address)
+    assert gone.status_code == 410
+    assert "This was deleted" in gone.text
+
+
+def test_run_again_draws_a_new_seed(site: Any, experiment: dict[str, Any]) -> None:
+    answer = site.client.post(f"/experiments/{experiment['id']}/again", data={"method": "rpn", "seed": "new"})
+    assert answer.status_code == 303
+    record = site.client.get("/api/v1" + answer.headers["location"]).json()
+    assert record["inputs"] == experiment["inputs"]
+    assert record["parameters"] == experiment["parameters"] | {"seed": record["parameters"]["seed"]}
+    assert record["parameters"]["seed"] != experiment["parameters"]["seed"]
+
+
+def test_the_other_model_runs_at_the_same_phase(site: Any, experiment: dict[str, Any], until: Any) -> None:
+    answer = site.client.post(f"/experiments/{experiment['id']}/again", data={"method": "adsn"})
+    both = answer.headers["location"]
+    assert both.startswith(f"/compare/{experiment['id']}/")
+    other = both.rsplit("/", 1)[-1]
+    until(lambda: site.client.get(f"/api/v1/experiments/{other}").json()["status"] == "succeeded")
+    record = site.client.get(f"/api/v1/experiments/{other}").json()
+    assert record["method"] == "adsn"
+    assert record["parameters"]["seed"] == experiment["parameters"]["seed"]
+    text = site.client.get(both).text
+    assert "both have the same phase" in text
+    assert text.split('class="panes')[1].split("</section>")[0].count("<img ") == 3
+
+
+def test_comparing_with_one_that_runs_shows_its_progress(site: Any, experiment: dict[str, Any]) -> None:
+    with site.gate.closed():
+        other = site.run(wait=False, method="adsn").json()
+        text = site.client.get(f"/compare/{experiment['id']}/{other['id']}").text
+    assert 'role="progressbar"' in text
+    assert f'data-experiment="{other["id"]}"' in text
+
+
+def test_other_parameters_open_the_form_with_those_of_the_experiment(site: Any, experiment: dict[str, Any]) -> None:
+    found = re.search(r'href="(/samples/[^"]+)">Other crop', page_of(site, experiment))
+    assert found is not None
+    text = site.client.get(found[1].replace("&amp;", "&")).text
+    for name, value in {"crop.width": 32, "crop.height": 24, "width": 40, "height": 36, "seed": 7}.items():
+        assert re.search(rf'name="{name}"[^>]* value="{value}"', text), name
+
+
+def test_the_snippets_name_every_parameter(site: Any, experiment: dict[str, Any]) -> None:
+    """What is left out could change with a later default."""
+    blocks = re.findall(r"<code id=[^>]+>(.*?)</code>", page_of(site, experiment), re.DOTALL)
+    assert len(blocks) == 3
+    for block in blocks:
+        for name in experiment["parameters"]:
+            if name not in {"width", "height"}:
+                assert name in block or name.replace("_", "-") in block
+        assert "rpn" in block
