@@ -20,7 +20,7 @@ from app.settings import Settings
 log = logging.getLogger(__name__)
 
 CONNECT_SECONDS = 10.0
-CLOSE_SECONDS = 3.0
+CLOSE_SECONDS = 5.0
 LOOPBACK = "127.0.0.1"
 
 EMBEDDED = {
@@ -119,7 +119,7 @@ class Engine:
         if self._cluster is None:
             return
         for nanny in list(self._cluster.workers.values()):
-            nanny.auto_restart = False
+            nanny.close_gracefully()  # it must not start another worker
             with suppress(Exception):
                 nanny.process.process.kill()
         try:

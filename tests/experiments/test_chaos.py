@@ -22,7 +22,7 @@ pytestmark = pytest.mark.chaos
 
 PROGRAM = Path(__file__).with_name("service_process.py")
 ROOT = Path(__file__).resolve().parents[2]
-SECONDS = 60.0
+SECONDS = 120.0
 SIDE = 3000  # takes seconds: long enough to be caught in the middle
 
 
