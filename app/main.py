@@ -67,7 +67,7 @@ def create_app(settings: Settings | None = None, service: Service | None = None)
         middleware=[
             Middleware(CountRequests, metrics=metrics),
             Middleware(SecurityHeaders),
-            Middleware(CrossOrigin, public_origin=settings.base_url and settings.base_url.rstrip("/")),
+            Middleware(CrossOrigin, public_address=settings.base_url),
             Middleware(HeadAsGet),
             Middleware(BodyLimit, upload=settings.max_upload_bytes),
         ],

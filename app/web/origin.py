@@ -22,9 +22,10 @@ class CrossOrigin:
     Browsers name where a request comes from in ``Sec-Fetch-Site`` and ``Origin``; programs send neither.
     """
 
-    def __init__(self, app: ASGIApp, *, public_origin: str | None) -> None:
+    def __init__(self, app: ASGIApp, *, public_address: str | None) -> None:
         self.app = app
-        self.public_origin = public_origin
+        parts = urlsplit(public_address or "")
+        self.public_origin = f"{parts.scheme}://{parts.netloc}" if parts.netloc else None
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] != "http":
@@ -47,7 +48,7 @@ class CrossOrigin:
 
     def _foreign(self, headers: Headers) -> bool:
         origin = headers.get("origin")
-        if self.public_origin is not None and origin == self.public_origin:
+        if origin is not None and origin == self.public_origin:
             return False
         site = headers.get("sec-fetch-site")
         if site is not None:

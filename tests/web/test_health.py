@@ -36,6 +36,21 @@ def test_alive_long_before_ready(site, serving, until):
         until(lambda: httpx.get(f"{url}/readyz").status_code == 200)
 
 
+def test_an_engine_that_does_not_start_is_logged_and_leaves_the_web_up(site, serving, until, caplog):
+    class Broken:
+        ready = False
+
+        def start(self) -> None:
+            raise OSError("no scheduler answers at tcp://nowhere:8786")
+
+        def close(self) -> None: ...
+
+    with serving(create_app(site.settings, Broken())) as url:
+        until(lambda: "The engine did not start" in caplog.text)
+        assert "nowhere" in caplog.text
+        assert [httpx.get(f"{url}{path}").status_code for path in ("/healthz", "/readyz")] == [200, 503]
+
+
 def metrics(site):
     response = site.client.get("/metrics")
     assert response.headers["Content-Type"].startswith("text/plain")

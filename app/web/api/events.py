@@ -48,8 +48,8 @@ async def experiment_events(
 ) -> AsyncIterator[ServerSentEvent]:
     """Send an event `progress` for every change, and an event `status` after it whenever the status is another.
 
-    The data of both is `{"status", "position", "progress", "stage", "elapsed"}`. The stream ends after a finished status,
-    or when the server stops: connect again then.
+    The data of both is `{"status", "position", "progress", "stage", "elapsed"}`. The stream ends after a finished
+    status, or when the server stops: connect again then.
     """
     status: Status | None = None
     number = 0
