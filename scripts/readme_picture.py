@@ -11,7 +11,7 @@ from app.samples import bundled
 from app.settings import ROOT, Settings
 from benchmarks.served import served
 
-SAMPLE = "sand_desert009"  # public domain: nobody's name has to stand below the picture
+SAMPLE = "grass_jungle002"  # public domain: nobody's name has to stand below the picture
 WIDTH, HEIGHT = 1440, 900
 PICTURE = ROOT / "docs" / "gallery.png"
 
