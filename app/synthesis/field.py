@@ -123,43 +123,49 @@ class Field:
         """Blocks of columns (C, rows of the spot, columns) of the transforms along x of planes − offsets, centred."""
         (channels, high, wide), width = planes.shape, self.noise.width
         left = (width - wide) // 2
-        spectra = _blocks_of(channels, high, width)
+        blocks, spectra = column_blocks(width), _blocks_of(channels, high, width)
 
         def transform(rows: tuple[int, int]) -> None:
             begin, end = rows
-            padded = np.zeros((channels, end - begin, width), np.float32)
-            inner = padded[:, :, left : left + wide]
+            padded = np.zeros((end - begin, width), np.float32)
+            inner = padded[:, left : left + wide]
             for channel, offset in enumerate(offsets):
-                inner[channel] = planes[channel, begin:end]
-                inner[channel] -= offset
-            rows_spectrum = scipy.fft.rfft(padded, workers=1)
-            for (first, last), target in zip(column_blocks(width), spectra, strict=True):
-                target[:, begin:end] = rows_spectrum[:, :, first:last]
+                inner[...] = planes[channel, begin:end]
+                inner -= offset
+                half = scipy.fft.rfft(padded, workers=1)
+                for (first, last), target in zip(blocks, spectra, strict=True):
+                    target[channel, begin:end] = half[:, first:last]
 
         self._team.run(transform, row_blocks(high), lambda part: self._progress("spot", part))
         return spectra
 
-    def _column_spectrum(self, index: int, target: Complex) -> Complex:
-        """One block of columns of the noise's spectrum, without the mean; ``target`` may be overwritten."""
-        noise, rows_spectrum = self.noise, self._blocks[index]
+    def _spectra(self, index: int, targets: Complex) -> Iterator[Complex]:
+        """One block of columns of the noise's spectrum, channel by channel, without the mean.
+
+        ``targets`` (C, height, columns) is overwritten, each plane of it only while its channel is asked for.
+        """
+        noise, spot = self.noise, self._blocks[index]
         first, last = column_blocks(noise.width)[index]
-        if target is not rows_spectrum:
-            end = self._top + rows_spectrum.shape[1]
-            target[:, : self._top] = 0
-            target[:, self._top : end] = rows_spectrum
-            target[:, end:] = 0
-        spectrum: Complex = scipy.fft.fft(target, axis=1, overwrite_x=True, workers=1)
-        smooth = self._smooth.block(first, last) if self._smooth else None
-        if smooth is not None:
-            spectrum -= smooth
-        if noise.phase == "replace":
-            spectrum[:] = np.abs(spectrum)
-        spectrum *= random_block(noise.height, noise.width, (first, last), noise.seed, noise.rayleigh)
-        if first == 0:
-            spectrum[:, 0, 0] = 0
-        if noise.add_smooth and smooth is not None:
-            spectrum += smooth
-        return spectrum
+        random = random_block(noise.height, noise.width, (first, last), noise.seed, noise.rayleigh)
+        smooths = self._smooth.block(first, last) if self._smooth else None
+        for target, rows in zip(targets, spot, strict=True):
+            if targets is not spot:
+                end = self._top + len(rows)
+                target[: self._top] = 0
+                target[self._top : end] = rows
+                target[end:] = 0
+            spectrum: Complex = scipy.fft.fft(target, axis=0, overwrite_x=True, workers=1)
+            if smooths is not None:
+                smooth = next(smooths)
+                spectrum -= smooth
+            if noise.phase == "replace":
+                spectrum[:] = np.abs(spectrum)
+            spectrum *= random
+            if first == 0:
+                spectrum[0, 0] = 0
+            if noise.add_smooth:
+                spectrum += smooth
+            yield spectrum
 
     def randomise(self) -> "Field":
         """Do the columns; needed once before `emit`."""
@@ -169,8 +175,10 @@ class Field:
             done = _blocks_of(len(self.mean), height, width)
 
         def transform(index: int) -> None:
-            spectrum = self._column_spectrum(index, done[index])
-            done[index] = scipy.fft.ifft(spectrum, axis=1, overwrite_x=True, workers=1)
+            for plane, spectrum in zip(done[index], self._spectra(index, done[index]), strict=True):
+                inverse = scipy.fft.ifft(spectrum, axis=0, overwrite_x=True, workers=1)
+                if not np.may_share_memory(inverse, plane):
+                    plane[:] = inverse
 
         self._team.run(transform, range(len(done)), lambda part: self._progress("random phase", part))
         self._blocks = done
@@ -183,15 +191,14 @@ class Field:
         -------
         ndarray of float32, shape (height, width // 2 + 1)
         """
-        power = np.empty((self.noise.height, self.noise.width // 2 + 1), np.float32)
+        channels, height = len(self.mean), self.noise.height
+        power = np.zeros((height, self.noise.width // 2 + 1), np.float32)
 
         def measure(index: int) -> None:
             first, last = column_blocks(self.noise.width)[index]
-            rows_spectrum = self._blocks[index]
-            spectrum = self._column_spectrum(
-                index, np.empty((len(rows_spectrum), self.noise.height, last - first), np.complex64)
-            )
-            power[:, first:last] = (spectrum.real**2 + spectrum.imag**2).mean(axis=0)
+            for spectrum in self._spectra(index, np.empty((channels, height, last - first), np.complex64)):
+                power[:, first:last] += spectrum.real**2 + spectrum.imag**2
+            power[:, first:last] /= channels
 
         self._team.run(measure, range(len(self._blocks)), lambda part: self._progress("output spectrum", part))
         return power

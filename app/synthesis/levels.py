@@ -47,7 +47,7 @@ class Levels:
         self._rows, self._channels = rows, channels
         self._scale = np.float32(peak / (high - low))
         self._shift = np.float32(0.5 - low * peak / (high - low))
-        self._limit = np.float32(peak + 0.5)
+        self._limit = np.float32(peak + 0.5).view(np.int32)
         self._type = np.uint8 if peak == 255 else np.uint16
 
     def __call__(self, first: int, planes: Iterable[Real]) -> None:
@@ -56,7 +56,9 @@ class Levels:
             if self._scale != 1:
                 np.multiply(plane, self._scale, out=plane)
             np.add(plane, self._shift, out=plane)
-            np.clip(plane, 0, self._limit, out=plane)
+            # The bits of floats sort as whole numbers do (those below 0 too are below 0), which are faster to clip.
+            bits = plane.view(np.int32)
+            np.clip(bits, 0, self._limit, out=bits)
             if pixels is None:
                 pixels = np.empty((*plane.shape, self._channels), self._type)
             # Rounded in the plane first: numpy is slow where it casts and strides at once.

@@ -20,6 +20,7 @@ Moisan, "Periodic plus smooth image decomposition", JMIV 2011; Galerne, Gousseau
 Theory and Synthesis", IEEE TIP 2011, equation 3.
 """
 
+from collections.abc import Iterator
 from functools import lru_cache
 
 import numpy as np
@@ -64,21 +65,23 @@ class SmoothSpectrum:
         right[:, 1::2] = 1j * right[:, ::2]
         self._left, self._right = left.view(np.float32), right.view(np.float32)
 
-    def block(self, first: int, last: int) -> Complex:
-        """Columns ``first`` to ``last`` − 1 of ŝ, shape (C, H, last − first)."""
-        smooth = np.empty((len(self._left), self._height, 2 * (last - first)), np.float32)
-        right, cross_sines = self._right[:, :, 2 * first : 2 * last], self._cross_sines[2 * first : 2 * last]
-        for y in range(0, self._height, CHUNK):
-            np.matmul(self._left[:, y : y + CHUNK], right, out=smooth[:, y : y + CHUNK])
-        denominator = self._sines[:, None] + cross_sines
+    def block(self, first: int, last: int) -> Iterator[Complex]:
+        """Columns ``first`` to ``last`` − 1 of ŝ, shape (H, last − first), channel by channel."""
+        columns = slice(2 * first, 2 * last)
+        inverse = self._sines[:, None] + self._cross_sines[columns]
         if first == 0:
-            denominator[0, :2] = np.inf
-        smooth *= np.reciprocal(denominator, out=denominator)
-        return smooth.view(np.complex64)
+            inverse[0, :2] = np.inf
+        np.reciprocal(inverse, out=inverse)
+        for left, right in zip(self._left, self._right, strict=True):
+            smooth = np.empty_like(inverse)
+            for y in range(0, self._height, CHUNK):
+                np.matmul(left[y : y + CHUNK], right[:, columns], out=smooth[y : y + CHUNK])
+            smooth *= inverse
+            yield smooth.view(np.complex64)
 
     def whole(self) -> Complex:
         """All of ŝ, shape (C, H, W // 2 + 1)."""
-        return self.block(0, self._width // 2 + 1)
+        return np.stack(list(self.block(0, self._width // 2 + 1)))
 
 
 def periodic_spectrum(h: Real, threads: int = 1) -> Complex:

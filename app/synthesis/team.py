@@ -1,7 +1,7 @@
 """A few threads that share out blocks of work; numpy and scipy release the interpreter's lock inside them."""
 
 from collections.abc import Callable, Iterable
-from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from concurrent.futures import ThreadPoolExecutor, wait
 from types import TracebackType
 from typing import TypeVar
 
@@ -24,23 +24,16 @@ class Team:
         self._pool.shutdown(wait=True, cancel_futures=True)
 
     def run(self, task: Callable[[T], object], items: Iterable[T], done: Callable[[float], None]) -> None:
-        """Call ``task(item)`` for every item in the pool, and ``done(part)`` in this thread after each.
-
-        ``part`` goes to 1.
+        """Call ``task(item)`` for every item in the pool, and ``done(part)`` in this thread, ``part`` going to 1.
 
         If a task or ``done`` raises, the tasks that have not begun are dropped, and the error is raised once the
         running ones have ended.
         """
-        waiting: set[Future[object]] = {self._pool.submit(task, item) for item in items}
-        total = len(waiting)
+        futures = [self._pool.submit(task, item) for item in items]
         try:
-            while waiting:
-                finished, waiting = wait(waiting, return_when=FIRST_COMPLETED)
-                for future in finished:
-                    future.result()
-                done(1 - len(waiting) / total)
+            for count, future in enumerate(futures, 1):
+                future.result()
+                done(count / len(futures))
         except BaseException:
-            for future in waiting:
-                future.cancel()
-            wait(waiting)
+            wait([future for future in futures if not future.cancel()])
             raise
