@@ -2,7 +2,7 @@
 
 import asyncio
 import time
-from collections.abc import AsyncIterator, Iterator
+from collections.abc import AsyncGenerator, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from datetime import UTC, datetime
@@ -63,7 +63,7 @@ class Following:
                     return await asyncio.to_thread(self._store.get, experiment_id)
                 await _within(changed, min(remaining, POLL_SECONDS))
 
-    async def watch(self, experiment_id: str) -> AsyncIterator[Snapshot]:
+    async def watch(self, experiment_id: str) -> AsyncGenerator[Snapshot, None]:
         """Every change, several at once if they come fast; ends after the finished state."""
         last: Snapshot | None = None
         with self._listen(experiment_id) as changed:

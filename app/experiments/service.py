@@ -3,7 +3,7 @@
 import asyncio
 import logging
 import threading
-from collections.abc import AsyncIterator, Mapping
+from collections.abc import AsyncGenerator, Mapping
 from dataclasses import replace
 from datetime import timedelta
 from functools import partial
@@ -191,7 +191,7 @@ class Service:
         """The experiment once it has finished, or as it is after this many seconds."""
         return await self._following.wait(experiment_id, seconds)
 
-    def watch(self, experiment_id: str) -> AsyncIterator[Snapshot]:
+    def watch(self, experiment_id: str) -> AsyncGenerator[Snapshot, None]:
         """Every change, several at once if they come fast; ends after the finished state."""
         return self._following.watch(experiment_id)
 

@@ -23,7 +23,7 @@ pytestmark = pytest.mark.chaos
 PROGRAM = Path(__file__).with_name("service_process.py")
 ROOT = Path(__file__).resolve().parents[2]
 SECONDS = 120.0
-SIDE = 3000  # takes seconds: long enough to be caught in the middle
+SIDE = 1500  # takes most of a second: long enough to be caught in the middle
 
 
 @contextmanager
