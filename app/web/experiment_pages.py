@@ -21,7 +21,7 @@ from app.methods.registry import METHODS, method
 from app.web.deps import ServiceDep, TokenDep, base_url, remember_owner
 from app.web.drafts import address
 from app.web.snippets import snippets
-from app.web.templating import render
+from app.web.templating import label, render
 
 SEE_OTHER = 303  # the answer to a form that was taken: go and look, and do not send it again on reload
 SEEDS = 1_000_000  # new seeds are below this: few enough digits to read them aloud
@@ -69,7 +69,7 @@ def experiment_page(
     declared = method(experiment.method)
     base = base_url(request)
     context = _common(service, experiment, token) | {
-        "title": f"{experiment.method.upper()} of {_sample_title(service, experiment)}",
+        "title": f"{label(experiment.method)} of {_sample_title(service, experiment)}",
         "view": view,
         "tiles": tiles,
         "url": f"{base}/experiments/{experiment.id}",
@@ -80,7 +80,7 @@ def experiment_page(
             "preview": f"{base}/api/v1/experiments/{experiment.id}/outputs/.preview",
             "panes": [
                 _pane(experiment, "crop", "Sample"),
-                _pane(experiment, "texture", experiment.method.upper()),
+                _pane(experiment, "texture", label(experiment.method)),
             ],
             "steps": list(_steps(experiment)),
             "others": [other for other in METHODS.values() if other.name != declared.name and _fits(other, declared)],
@@ -166,7 +166,7 @@ def compare(
     """Show two experiments beside the sample of the first; one that still runs shows its progress until it is there."""
     both = [service.get(first_id), service.get(second_id)]
     first, second = both
-    names = [experiment.method.upper() for experiment in both]
+    names = [label(experiment.method) for experiment in both]
     same_crop = first.inputs == second.inputs
     context: dict[str, Any] = {
         "title": f"{' and '.join(names)} of {_sample_title(service, first)}",

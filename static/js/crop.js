@@ -59,7 +59,8 @@ function draw() {
   dark.style.clipPath = `polygon(evenodd, ${[...outer, ...hole].map(([x, y]) => `${x}px ${y}px`).join(", ")})`;
   label.textContent = `${crop.width} × ${crop.height}`;
   box.classList.toggle("small", width < 120 || height < 64);
-  box.classList.toggle("low", top + height + 36 > size.height * scale);
+  box.classList.toggle("tiny", width < 88 || height < 88);
+  box.classList.toggle("low", top + height + 52 > size.height * scale);
   const percent = Math.round(scale * 100);
   readout.textContent = `${crop.width} × ${crop.height} of ${size.width} × ${size.height}, shown at ${percent} %`;
 }

@@ -18,7 +18,7 @@ function followCrop() {
     height.value = Math.floor(Number(crop.height.value) * factor + 0.5);
   }
   const [w, h] = [width.value || crop.width.value, height.value || crop.height.value];
-  total.textContent = `${chosen().toUpperCase()}, ${w} × ${h} pixels`;
+  total.textContent = `${document.querySelector(`[for=method-${chosen()}]`).textContent}, ${w} × ${h} pixels`;
   clearTimeout(pending);
   pending = setTimeout(keepInAddress, 250);
 }

@@ -37,7 +37,8 @@ def assert_accessible(page: Page) -> None:
 
 
 def settle(page: Page) -> None:
-    page.wait_for_load_state("networkidle")
+    """Wait until the pictures that are in sight are there."""
+    page.wait_for_function("() => [...document.images].every(image => image.loading === 'lazy' || image.complete)")
 
 
 @pytest.mark.parametrize("theme", THEMES)

@@ -148,14 +148,14 @@ def test_the_whole_way_by_keyboard(visitors: Any, photograph: Path) -> None:
     chooser.value.set_files(photograph)
     page.wait_for_url("**/samples/*")
     tab_to(page, ".box")
-    for _ in range(29):
+    for _ in range(6):
         page.keyboard.press("Control+Shift+ArrowLeft")
         page.keyboard.press("Control+Shift+ArrowUp")
     page.keyboard.press("Shift+ArrowRight")
     for _ in range(3):
         page.keyboard.press("Control+ArrowDown")
     page.keyboard.press("ArrowLeft")
-    assert crop_of(page) == [255, 286, 223, 222]
+    assert crop_of(page) == [255, 286, 453, 452]
     tab_to(page, "#method-rpn")
     page.keyboard.press("ArrowRight")
     expect(page.locator("#method-adsn")).to_be_checked()
