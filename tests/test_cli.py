@@ -153,6 +153,19 @@ def test_a_file_that_is_no_whole_photograph_is_refused(tmp_path: Path, content: 
     assert not (tmp_path / "out.png").exists()
 
 
+def test_a_photograph_alone_is_not_enough_and_is_left_alone() -> None:
+    before = CHINA.read_bytes()
+    done = synthesize(CHINA, "--overwrite")
+    assert (done.exit_code, done.stderr) == (2, "microtexture: Name a photograph, and then the file to write.\n")
+    assert CHINA.read_bytes() == before
+
+
+def test_more_photographs_than_the_method_takes_are_refused(tmp_path: Path) -> None:
+    done = synthesize(CHINA, SAND, tmp_path / "out.png")
+    assert done.exit_code == 2
+    assert "takes 1 input" in done.stderr
+
+
 def test_a_missing_photograph_is_named(tmp_path: Path) -> None:
     assert "nowhere.jpg" in synthesize(tmp_path / "nowhere.jpg", tmp_path / "out.png").stderr
 

@@ -78,6 +78,8 @@ def run(request: Request, settings: Settings, progress: Progress) -> str:
 
 
 def _target(request: Request) -> tuple[Format, Literal[8, 16]]:
+    if not request.photos:
+        raise InvalidInputError("Name a photograph, and then the file to write.")
     chosen = FORMATS.get(request.out.suffix.lower())
     if chosen is None:
         raise InvalidInputError(

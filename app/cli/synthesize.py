@@ -18,7 +18,7 @@ _OWN = {
     "files": (
         list[Path],
         typer.Argument(
-            help="The photograph, or as many as the method takes, and then the file to write.", metavar="PHOTO... OUT"
+            help="The photograph, or as many as the method takes, and then the file to write.", metavar="PHOTO OUT"
         ),
         inspect.Parameter.empty,
     ),
@@ -72,7 +72,8 @@ def _option(field: FormField, owners: list[str]) -> inspect.Parameter:
     name = field.name.replace("_", "-")
     help_text = field.help if len(owners) == len(METHODS) else f"{field.help} ({', '.join(owners)})"
     if field.kind == "switch":
-        declared = typer.Option(f"--{name}/--no-{name}", help=help_text, show_default=field.default or "off")
+        help_text = f"{help_text} [default: {field.default or 'off'}]"
+        declared = typer.Option(f"--{name}/--no-{name}", help=help_text)
         return _parameter(field.name, bool | None, declared, None)
     metavar = "|".join(field.choices) or {"integer": "N", "number": "X"}.get(field.kind, "TEXT")
     if field.default:
