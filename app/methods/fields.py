@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import Any, Literal
 
 from pydantic import BaseModel
@@ -44,6 +45,7 @@ def _bound(schema: Mapping[str, Any], *names: str) -> str:
     return next((_text(schema[name]) for name in names if name in schema), "")
 
 
+@cache
 def fields(params: type[BaseModel]) -> tuple[FormField, ...]:
     """Every parameter of a Params class as a form field, in the order of its declaration.
 

@@ -192,8 +192,8 @@ def compare(
         )
         for experiment, name in zip(both, names, strict=True)
     ]
-    labels = {label: None for experiment in both for label, _ in _rows(experiment)}
-    rows = [(label, [dict(_rows(experiment)).get(label, "–") for experiment in both]) for label in labels]
+    told = [dict(_rows(experiment)) for experiment in both]
+    rows = [(name, [values.get(name, "–") for values in told]) for name in told[0] | told[1]]
     return render(request, "compare.html", context | {"panes": panes, "experiments": both, "rows": rows})
 
 
