@@ -1,17 +1,22 @@
 """Files made from stored ones and cached: what a browser shows of a sample, and downloads in other formats."""
 
 import hashlib
+from collections.abc import Callable
 from pathlib import Path
+
+from PIL import Image
 
 from app.errors import InvalidInputError
 from app.experiments.cache import FileCache
 from app.experiments.model import Output, Sample
 from app.experiments.ports import BlobStore
-from app.images.convert import PREVIEW, Format, convert, pair, rendition
+from app.images.convert import Format, convert, pair, rendition, thumbnails
 
 DEEP_FORMATS = ("png", "tiff")
 SIZES = (256, 512, 1024, 2048)
 PREVIEW_NAME = ".preview"
+THUMBNAIL_NAMES = (".thumbnail-crop", ".thumbnail-texture")
+DERIVED = {PREVIEW_NAME: "Preview", **dict.fromkeys(THUMBNAIL_NAMES, "Thumbnail")}
 PNG = "image/png"
 
 
@@ -40,12 +45,28 @@ class Pictures:
             return stored, media_type
         return self._cache.get(f"{output.digest}.{file_format}", lambda: convert(stored, file_format)[0]), media_type
 
-    def preview(self, crop: Output, texture: Output) -> tuple[Output, Path]:
-        """The pair of pictures that stands for an experiment elsewhere; made when first asked for."""
+    def derived(self, name: str, crop: Output, texture: Output) -> tuple[Output, Path]:
+        """One of the pictures that stand for an experiment in lists and elsewhere; made when first asked for."""
         stored = self._blobs.path(crop.digest), self._blobs.path(texture.digest)
-        path = self._cache.get(f"{texture.digest}-{crop.digest}.jpeg", lambda: pair(*stored))
-        digest = hashlib.sha256(f"{crop.digest} {texture.digest}".encode()).hexdigest()
-        return Output(PREVIEW_NAME, "Preview", "image/jpeg", *PREVIEW, path.stat().st_size, digest), path
+        pair_digest = hashlib.sha256(f"{name} {crop.digest} {texture.digest}".encode()).hexdigest()
+
+        def cached(part: str, make: Callable[[], bytes]) -> Path:
+            return self._cache.get(f"{texture.digest}-{crop.digest}{part}", make)
+
+        if name == PREVIEW_NAME:
+            path, media_type = cached(name, lambda: pair(*stored)), "image/jpeg"
+        else:
+
+            def both() -> bytes:
+                made = dict(zip(THUMBNAIL_NAMES, thumbnails(*stored), strict=True))
+                for each, data in made.items():
+                    if each != name:
+                        cached(each, lambda data=data: data)  # type: ignore[misc] # a browser asks for it next
+                return made[name]
+
+            path, media_type = cached(name, both), "image/webp"
+        size = Image.open(path).size
+        return Output(name, DERIVED[name], media_type, *size, path.stat().st_size, pair_digest), path
 
     def check_deep(self, file_format: Format) -> None:
         """Raise `InvalidInputError` if files of this format have no 16 bits per channel."""

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Literal
 
 from app.errors import AppError, CancelledError, DeletedError, NotFoundError
-from app.experiments.files import File, of_picture, with_hidden
 from app.experiments.model import Experiment, Output, Status
 from app.experiments.ports import BlobStore, ExperimentStore
 from app.images.read import read_crop
@@ -77,11 +76,12 @@ def _compute(
     stages = Stages(progress)
     sources = _read(store, blobs, experiment, stages)
     pictures = _pictures(experiment, sources, 8, threads, stages)
-    files = map(of_picture, islice(pictures, 1)) if experiment.transient else with_hidden(sources[0], pictures)
-    with _staged(blobs, files) as staged:
+    if experiment.transient:
+        pictures = islice(pictures, 1)
+    with _staged(blobs, pictures) as staged:
         stages("writing", 1.0)
         with blobs.lease():
-            outputs = [_kept(blobs, file, path) for file, path in staged]
+            outputs = [_kept(blobs, picture, path) for picture, path in staged]
             store.succeed(experiment.id, outputs, stages.seconds())
 
 
@@ -97,9 +97,9 @@ def _add_deep_texture(
     stages = Stages(progress)
     sources = _read(store, blobs, experiment, stages)
     pictures = islice(_pictures(experiment, sources, 16, threads, stages), 1)
-    with _staged(blobs, map(of_picture, pictures)) as staged, blobs.lease():
-        for file, path in staged:
-            store.add_output(experiment_id, replace(_kept(blobs, file, path), name=DEEP_TEXTURE))
+    with _staged(blobs, pictures) as staged, blobs.lease():
+        for picture, path in staged:
+            store.add_output(experiment_id, replace(_kept(blobs, picture, path), name=DEEP_TEXTURE))
 
 
 def _read(store: ExperimentStore, blobs: BlobStore, experiment: Experiment, progress: Progress) -> list[Source]:
@@ -125,22 +125,22 @@ def _pictures(
 
 
 @contextmanager
-def _staged(blobs: BlobStore, files: Iterable[File]) -> Iterator[list[tuple[File, Path]]]:
-    """Files on disk beside the store: what is large does not stay in memory until all are made."""
-    staged: list[tuple[File, Path]] = []
+def _staged(blobs: BlobStore, pictures: Iterable[Picture]) -> Iterator[list[tuple[Picture, Path]]]:
+    """Pictures as files beside the store: what is large does not stay in memory until all are made."""
+    staged: list[tuple[Picture, Path]] = []
     try:
-        for file in files:
-            staged.append((replace(file, data=b""), blobs.temporary(file.data)))
+        for picture in pictures:
+            staged.append((replace(picture, png=b""), blobs.temporary(picture.png)))
         yield staged
     finally:
         for _, path in staged:
             path.unlink(missing_ok=True)
 
 
-def _kept(blobs: BlobStore, file: File, path: Path) -> Output:
+def _kept(blobs: BlobStore, picture: Picture, path: Path) -> Output:
     size = path.stat().st_size
     digest = blobs.put_file(path)
-    return Output(file.name, file.title, file.media_type, file.width, file.height, size, digest)
+    return Output(picture.name, picture.title, "image/png", picture.width, picture.height, size, digest)
 
 
 class Stages:

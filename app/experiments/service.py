@@ -17,7 +17,7 @@ from app.experiments.housekeeping import Housekeeping, Pruned
 from app.experiments.intake import SampleIntake
 from app.experiments.model import Experiment, Output, Page, Sample, Snapshot, Status
 from app.experiments.ownership import new_token, same, token_digest
-from app.experiments.pictures import PREVIEW_NAME, Pictures
+from app.experiments.pictures import DERIVED, Pictures
 from app.experiments.ports import BlobStore, Executor, ExperimentStore
 from app.experiments.run import DEEP, DEEP_TEXTURE
 from app.experiments.submission import NewExperiment, NewInput, prepare
@@ -200,8 +200,8 @@ class Service:
     def output(self, experiment_id: str, name: str) -> tuple[Output, Path]:
         """An output's record and its file. Raises `NotFoundError`, also while it is not there yet."""
         experiment = self._store.get(experiment_id)
-        if name == PREVIEW_NAME:
-            return self._pictures.preview(self._output(experiment, "crop"), self._output(experiment, "texture"))
+        if name in DERIVED:
+            return self._pictures.derived(name, self._output(experiment, "crop"), self._output(experiment, "texture"))
         output = self._output(experiment, name)
         return output, self._blobs.path(output.digest)
 
