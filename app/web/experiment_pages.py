@@ -167,9 +167,10 @@ def compare(
     both = [service.get(first_id), service.get(second_id)]
     first, second = both
     names = [label(experiment.method) for experiment in both]
+    samples = dict.fromkeys(_sample_title(service, experiment) for experiment in both)
     same_crop = first.inputs == second.inputs
     context: dict[str, Any] = {
-        "title": f"{' and '.join(names)} of {_sample_title(service, first)}",
+        "title": f"{' and '.join(names)} of {' and '.join(samples)}",
         "same_phase": same_crop and first.parameters["seed"] == second.parameters["seed"],
         "base": f"/compare/{first.id}/{second.id}",
         "view": "side" if view == "steps" else view,

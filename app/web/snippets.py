@@ -8,6 +8,7 @@ from typing import Any
 from app.experiments.model import Experiment
 
 WIDTH = 76  # characters of a line
+JOINED = "\N{NO-BREAK SPACE}"  # where no line is broken
 
 
 def snippets(experiment: Experiment, base_url: str) -> tuple[tuple[str, str], ...]:
@@ -74,7 +75,8 @@ def _python(experiment: Experiment, base_url: str) -> str:
     crop = experiment.inputs[0].crop
     rectangle = {"x": crop.x, "y": crop.y, "width": crop.width, "height": crop.height}
     source = f'{{"sample": {_literal(experiment.inputs[0].sample)},\n      "crop": {_literal(rectangle)}}}'
-    parameters = fill(_literal(_said(dict(experiment.parameters))), WIDTH - 4, subsequent_indent=" " * 8)
+    together = f'"parameters": {_literal(_said(dict(experiment.parameters)))}'.replace(": ", f":{JOINED}")
+    parameters = fill(together, WIDTH, initial_indent=" " * 4, subsequent_indent=" " * 8).replace(JOINED, " ")
     return f"""import time
 
 import httpx
@@ -84,7 +86,7 @@ request = {{
     "inputs": [
         {source.replace("      ", " " * 9)}
     ],
-    "parameters": {parameters},
+{parameters},
     "listed": False,
 }}
 with httpx.Client(base_url={_literal(base_url)}, timeout=60) as service:
