@@ -178,7 +178,7 @@ def test_the_finished_page_replaces_the_waiting_room_without_a_reload(visitors: 
 def test_polling_takes_over_where_events_fail(visitors: Any) -> None:
     """A proxy that swallows server-sent events does not keep the page waiting."""
     visitors.refusals_expected = True
-    page = visitors.visit("/samples/gravel_gray?crop=0,0,256,256&width=3000&height=3000")
+    page = visitors.visit("/samples/gravel_gray?crop=0,0,256,256&width=1200&height=1200")
     page.route("**/events", lambda route: route.fulfill(status=404, body=""))
     page.get_by_role("button", name="Synthesise").click()
     page.wait_for_url("**/experiments/*")

@@ -1,6 +1,9 @@
 """The page of an experiment in its states, as the server writes it, and what its buttons do."""
 
+import html
 import re
+from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -134,3 +137,14 @@ def test_the_snippets_name_every_parameter(site: Any, experiment: dict[str, Any]
             if name not in {"width", "height"}:
                 assert name in block or name.replace("_", "-") in block
         assert "rpn" in block
+
+
+def test_a_failed_experiment_says_why_and_what_to_try(serve: Callable[..., Any], tmp_path: Path) -> None:
+    with serve(tmp_path, time_limit=0.05) as site, site.gate.closed():
+        record = site.run().json()
+        assert record["status"] == "failed"
+        text = page_of(site, record)
+    assert "It did not work" in text
+    assert html.escape(record["error"]) in text
+    assert "Change it and try again" in text
+    assert "refresh" not in text
