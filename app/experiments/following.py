@@ -52,31 +52,34 @@ class Following:
     async def wait(self, experiment_id: str, seconds: float) -> Experiment:
         """The experiment once it has finished, or as it is after this many seconds."""
         deadline = time.monotonic() + seconds
+        told = True
         with self._listen(experiment_id) as changed:
             while True:
-                if self._executor.snapshot(experiment_id) is None:
+                if not told or self._executor.snapshot(experiment_id) is None:
                     experiment = await asyncio.to_thread(self._store.get, experiment_id)
                     if experiment.status.finished:
                         return experiment
                 remaining = deadline - time.monotonic()
                 if remaining <= 0:
                     return await asyncio.to_thread(self._store.get, experiment_id)
-                await _within(changed, min(remaining, POLL_SECONDS))
+                told = await _within(changed, min(remaining, POLL_SECONDS))
 
     async def watch(self, experiment_id: str) -> AsyncGenerator[Snapshot, None]:
         """Every change, several at once if they come fast; ends after the finished state."""
         last: Snapshot | None = None
+        told = True
         with self._listen(experiment_id) as changed:
             while True:
                 found = self._executor.snapshot(experiment_id)
-                if found is None:
-                    found = _snapshot_of(await asyncio.to_thread(self._store.get, experiment_id))
+                if found is None or not told:
+                    stored = _snapshot_of(await asyncio.to_thread(self._store.get, experiment_id))
+                    found = stored if found is None or stored.status.finished else found
                 if last is None or replace(found, elapsed=0.0) != replace(last, elapsed=0.0):
                     yield found
                     last = found
                 if found.status.finished:
                     return
-                await _within(changed, POLL_SECONDS)
+                told = await _within(changed, POLL_SECONDS)
                 await asyncio.sleep(UPDATE_SECONDS)
 
     async def left(self, job: str, seconds: float) -> bool:
@@ -112,8 +115,10 @@ def _snapshot_of(experiment: Experiment) -> Snapshot:
     return Snapshot(experiment.status, fraction=fraction, elapsed=elapsed)
 
 
-async def _within(event: asyncio.Event, seconds: float) -> None:
-    """Return when the event is set, or when the seconds have passed; clear it."""
+async def _within(event: asyncio.Event, seconds: float) -> bool:
+    """Return when the event is set, or when the seconds have passed; clear it. Whether it was set."""
     with suppress(TimeoutError):
         await asyncio.wait_for(event.wait(), seconds)
+    told = event.is_set()
     event.clear()
+    return told

@@ -32,7 +32,7 @@ def token_digest(token: str) -> str:
     Examples
     --------
     >>> token_digest("texture")[:8]
-    '5bd60aed'
+    '38a3c50b'
     """
     return hashlib.sha256(token.encode(errors="replace")).hexdigest()
 

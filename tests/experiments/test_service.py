@@ -254,11 +254,19 @@ def test_watching_ends_with_the_finished_state(service: Service, sample: Sample)
 def test_an_experiment_that_another_process_finishes_is_noticed(
     upload: Path, make_service: Callable[..., Service]
 ) -> None:
+    """Both if it never heard of the experiment, and if it waits for its own engine to get to it."""
     idle, working = make_service(), make_service()
     sample = working.add_sample(upload, None)
+    accepted = idle.submit(a_request(sample), OWNER)
     working.start()
-    experiment = working.submit(a_request(sample), OWNER)
-    assert asyncio.run(idle.wait(experiment.id, SECONDS)).status is Status.SUCCEEDED
+    unheard_of = working.submit(a_request(sample), OWNER)
+
+    async def watched(experiment_id: str) -> list[Snapshot]:
+        return [snapshot async for snapshot in idle.watch(experiment_id)]
+
+    for experiment in (accepted, unheard_of):
+        assert asyncio.run(watched(experiment.id))[-1].status is Status.SUCCEEDED
+        assert asyncio.run(idle.wait(experiment.id, SECONDS)).status is Status.SUCCEEDED
 
 
 def test_the_texture_at_16_bits_is_the_same_one_and_made_once(service: Service, sample: Sample) -> None:
