@@ -14,7 +14,6 @@ from typing import Any
 
 import psutil
 
-from app.experiments.files import with_hidden
 from app.images.crop import Rectangle
 from app.images.read import read_crop
 from app.methods.model import Context, Source
@@ -42,11 +41,11 @@ def body(seed: int, **parameters: object) -> dict[str, Any]:
 
 
 def directly(photo: Path, seed: int, threads: int) -> int:
-    """Compute what a worker does for an experiment: crop, every picture, thumbnails; return the bytes made."""
+    """Compute what a worker does for an experiment: the crop and every picture; return the bytes made."""
     rpn = method("rpn")
     source = Source(read_crop(photo, CROP), 255)
     context = Context(8, threads, lambda stage, fraction: None)
-    return sum(len(file.data) for file in with_hidden(source, rpn.run([source], rpn.params(seed=seed), context)))
+    return sum(len(picture.png) for picture in rpn.run([source], rpn.params(seed=seed), context))
 
 
 def kernel(photo: Path, seed: int, threads: int) -> None:
@@ -79,7 +78,7 @@ def overhead(service: Served, photo: Path, threads: int) -> None:
     line("one experiment of 512², request to finished record", total, "ms")
     line("  its kernel, called directly: the texture as PNG", texture, "ms")
     line("  minus the kernel", total - texture, "ms", 80)
-    line("  of which steps, spectra, thumbnails, preview", work - texture, "ms", note="the same calls made directly")
+    line("  of which the steps and spectra", work - texture, "ms", note="the same calls made directly")
     computed = 1e3 * statistics.median(sum(each.values()) for each in stages)
     line("  of which web, database, engine, files", total - work, "ms", note=f"{computed:.0f} ms pass in the worker")
     for stage in stages[0]:
