@@ -6,15 +6,14 @@ import time
 from collections import Counter
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 from distributed import Future
 from distributed.scheduler import KilledWorker
 
+from app.executor.dispatched import Dispatched, verdict
 from app.executor.engine import Engine
-from app.executor.words import BROKEN, LOST, out_of_time
 from app.experiments.model import Snapshot, Status
 from app.experiments.ports import Ended, Run
 from app.settings import Settings
@@ -25,27 +24,8 @@ TICK_SECONDS = 0.25  # how often limits are looked at
 WORKERS_SECONDS = 5.0  # how often the list of workers is asked for, besides when it is known to have changed
 GRACE_SECONDS = 2.0  # how long a job may take to stop when asked politely
 SILENCE_SECONDS = 30.0  # how long a worker may take to report that it has begun
-ATTEMPTS = 2  # runs of a job whose worker is killed
 FIRST_PAUSE_SECONDS, LONGEST_PAUSE_SECONDS = 0.5, 30.0  # before the engine is opened again
 START_SECONDS = 30.0  # how long the start waits for a scheduler that is not there yet
-
-
-@dataclass(eq=False)
-class _Run:
-    """A job on a worker."""
-
-    job: str
-    address: str
-    sent: float
-    future: "Future[None] | None" = None
-    started: float | None = None
-    stage: str | None = None
-    fraction: float = 0.0
-    failure: str | None = None
-    cancelled: float | None = None
-    asked: bool = False
-    out_of_time: bool = False
-    forced: bool = False
 
 
 class DaskExecutor:
@@ -67,9 +47,9 @@ class DaskExecutor:
         self._run = run
         self._state = threading.Condition()  # guards all below
         self._queue: list[str] = []
-        self._runs: dict[str, _Run] = {}
+        self._runs: dict[str, Dispatched] = {}
         self._deaths: Counter[str] = Counter()
-        self._left: list[_Run] = []
+        self._left: list[Dispatched] = []
         self._slots: dict[str, int] = {}
         self._condemned: set[str] = set()
         self._workers_known = 0.0
@@ -164,7 +144,7 @@ class DaskExecutor:
             self._workers_known = 0.0
             self._wake()
 
-    def _on_done(self, run: _Run, future: "Future[None]") -> None:
+    def _on_done(self, run: Dispatched, future: "Future[None]") -> None:
         with self._state:
             self._left.append(run)
             self._wake()
@@ -172,7 +152,7 @@ class DaskExecutor:
     # the dispatcher's thread
 
     def _dispatch(self) -> None:
-        left: list[_Run] = []
+        left: list[Dispatched] = []
         while self._open:
             try:
                 for run in left:
@@ -187,7 +167,7 @@ class DaskExecutor:
                 self._woken = False
                 left, self._left = self._left, []
 
-    def _leave(self, run: _Run) -> None:
+    def _leave(self, run: Dispatched) -> None:
         """A task has left Dask, one way or the other."""
         if self._runs.get(run.job) is not run or run.future is None:
             return
@@ -198,7 +178,9 @@ class DaskExecutor:
             with suppress(Exception):
                 self._engine.forget(run.future)
         run.future.release()
-        again, failure = self._verdict(run, status, error)
+        if isinstance(error, KilledWorker):
+            self._deaths[run.job] += 1
+        again, failure = verdict(run, status, error, deaths=self._deaths[run.job], time_limit=self._settings.time_limit)
         if not again:
             self._deaths.pop(run.job, None)
             if self._ended is not None:
@@ -209,22 +191,6 @@ class DaskExecutor:
                 self._queue.insert(0, run.job)
             moved = list(self._queue) if again else []
         self._tell(run.job, *moved)
-
-    def _verdict(self, run: _Run, status: str | None, error: BaseException | None) -> tuple[bool, str | None]:
-        """Whether it runs again, and otherwise what failed."""
-        if run.out_of_time:
-            return False, out_of_time(self._settings.time_limit)
-        if run.cancelled is not None:
-            return False, None
-        if status == "finished":
-            return False, run.failure
-        if isinstance(error, KilledWorker):
-            self._deaths[run.job] += 1
-            return self._deaths[run.job] < ATTEMPTS, LOST
-        if error is not None:
-            log.error("job %s failed outside the method", run.job, exc_info=error)
-            return False, BROKEN
-        return True, None  # the scheduler forgot it
 
     def _keep_limits(self) -> None:
         """Stop what was cancelled or takes too long: first politely, then by killing its worker."""
@@ -308,7 +274,7 @@ class DaskExecutor:
             if job is None:
                 return
             self._queue.remove(job)
-            run = self._runs[job] = _Run(job, address, time.monotonic())
+            run = self._runs[job] = Dispatched(job, address, time.monotonic())
             moved = list(self._queue)
         try:
             run.future = engine.submit(job, self._deaths[job], address)

@@ -1,5 +1,7 @@
 """What goes, and when: an experiment with all that only it referred to, and what lies about unused."""
 
+import logging
+import threading
 from collections.abc import Iterable
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
@@ -9,6 +11,10 @@ from app.experiments.cache import FileCache
 from app.experiments.model import Experiment
 from app.experiments.ports import BlobStore, ExperimentStore
 
+log = logging.getLogger(__name__)
+
+PRUNE_SECONDS = 3600.0
+RECORD_SECONDS = 5.0  # how soon a failure that the database did not take is offered to it again
 BATCH = 500  # files looked at under one lock, so that nobody waits long for it
 
 
@@ -48,6 +54,30 @@ class Housekeeping:
         self._cache = cache
         self._sample_keep = sample_keep
         self._longest_run = longest_run
+        self._unrecorded: dict[str, str] = {}
+
+    def keep(self, closing: threading.Event) -> None:
+        """Prune every hour, and offer the database again what it did not take, until told to stop."""
+        waited = 0.0
+        while not closing.wait(RECORD_SECONDS):
+            try:
+                for experiment_id in list(self._unrecorded):
+                    self._store.fail(experiment_id, self._unrecorded[experiment_id])
+                    del self._unrecorded[experiment_id]
+                waited += RECORD_SECONDS
+                if waited >= PRUNE_SECONDS:
+                    waited = 0.0
+                    self.prune(None)
+            except Exception:
+                log.exception("housekeeping failed; it will be tried again")
+
+    def record_failure(self, experiment_id: str, failure: str) -> None:
+        """Record it now, or as soon as the database is there again."""
+        try:
+            self._store.fail(experiment_id, failure)
+        except Exception:
+            log.exception("the failure of experiment %s could not be recorded; it will be tried again", experiment_id)
+            self._unrecorded[experiment_id] = failure
 
     def delete(self, experiment: Experiment) -> None:
         """Remove an experiment, and its samples and files unless something else refers to them."""

@@ -4,13 +4,11 @@ import hashlib
 from collections.abc import Callable
 from pathlib import Path
 
-from PIL import Image
-
 from app.errors import InvalidInputError
 from app.experiments.cache import FileCache
 from app.experiments.model import Output, Sample
 from app.experiments.ports import BlobStore
-from app.images.convert import Format, convert, pair, rendition, thumbnails
+from app.images.convert import PREVIEW, THUMBNAIL, Format, convert, pair, rendition, thumbnails
 
 DEEP_FORMATS = ("png", "tiff")
 SIZES = (256, 512, 1024, 2048)
@@ -65,8 +63,8 @@ class Pictures:
                 return made[name]
 
             path, media_type = cached(name, both), "image/webp"
-        size = Image.open(path).size
-        return Output(name, DERIVED[name], media_type, *size, path.stat().st_size, pair_digest), path
+        width, height = PREVIEW if name == PREVIEW_NAME else _thumbnail_size(name, crop, texture)
+        return Output(name, DERIVED[name], media_type, width, height, path.stat().st_size, pair_digest), path
 
     def check_deep(self, file_format: Format) -> None:
         """Raise `InvalidInputError` if files of this format have no 16 bits per channel."""
@@ -74,3 +72,9 @@ class Pictures:
             raise InvalidInputError(
                 f"{file_format.upper()} has 8 bits per channel only: ask for png or tiff, or for depth 8.", "depth"
             )
+
+
+def _thumbnail_size(name: str, crop: Output, texture: Output) -> tuple[int, int]:
+    scale = min(1.0, THUMBNAIL / max(crop.width, crop.height, texture.width, texture.height))
+    original = crop if name == THUMBNAIL_NAMES[0] else texture
+    return max(1, round(original.width * scale)), max(1, round(original.height * scale))

@@ -1,7 +1,6 @@
 """The use cases. Pages, API and command line talk to this and to nothing below it."""
 
 import asyncio
-import logging
 import threading
 from collections.abc import AsyncGenerator, Mapping
 from dataclasses import replace
@@ -10,27 +9,23 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
-from app.errors import AppError, BusyError, ConflictError, ForbiddenError, InvalidInputError, NotFoundError
+from app.errors import BusyError, ConflictError, ForbiddenError
 from app.experiments.cache import FileCache
 from app.experiments.following import Following
 from app.experiments.housekeeping import Housekeeping, Pruned
 from app.experiments.intake import SampleIntake
 from app.experiments.model import Experiment, Output, Page, Sample, Snapshot, Status
+from app.experiments.outputs import Outputs
 from app.experiments.ownership import new_token, same, token_digest
-from app.experiments.pictures import DERIVED, Pictures
+from app.experiments.pictures import Pictures
 from app.experiments.ports import BlobStore, Executor, ExperimentStore
-from app.experiments.run import DEEP, DEEP_TEXTURE
+from app.experiments.run import DEEP
 from app.experiments.submission import NewExperiment, NewInput, prepare
 from app.images.convert import Format
 from app.images.crop import Rectangle
 from app.settings import Settings
 
-log = logging.getLogger(__name__)
-
 CACHE_BYTES = 1 << 30
-PRUNE_SECONDS = 3600.0
-RECORD_SECONDS = 5.0  # how soon a failure that the database did not take is offered to it again
-DEEP_SECONDS = 120.0  # how long a download waits for its 16-bit texture
 
 
 class Service:
@@ -53,6 +48,9 @@ class Service:
         cache = FileCache(settings.data_dir / "cache", CACHE_BYTES)
         self._pictures = Pictures(blobs, cache)
         self._following = Following(store, executor)
+        self._outputs = Outputs(
+            store, blobs, executor, self._pictures, self._following, queue_limit=settings.queue_limit
+        )
         self._intake = SampleIntake(store, blobs, settings)
         self._housekeeping = Housekeeping(
             store,
@@ -61,8 +59,6 @@ class Service:
             sample_keep=timedelta(hours=settings.sample_keep_hours),
             longest_run=timedelta(hours=1, seconds=settings.time_limit),
         )
-        self._unrecorded: dict[str, str] = {}
-        self._failures: dict[str, str] = {}
         self._closing = threading.Event()
         self._background: list[threading.Thread] = []
 
@@ -75,7 +71,7 @@ class Service:
             self._executor.submit(experiment_id)
         self._intake.open()
         self._executor.start(self._ended)
-        for work in (partial(self._intake.add_bundled, self._closing), self._keep_house):
+        for work in (partial(self._intake.add_bundled, self._closing), partial(self._housekeeping.keep, self._closing)):
             thread = threading.Thread(target=work, daemon=True)
             thread.start()
             self._background.append(thread)
@@ -199,11 +195,7 @@ class Service:
 
     def output(self, experiment_id: str, name: str) -> tuple[Output, Path]:
         """An output's record and its file. Raises `NotFoundError`, also while it is not there yet."""
-        experiment = self._store.get(experiment_id)
-        if name in DERIVED:
-            return self._pictures.derived(name, self._output(experiment, "crop"), self._output(experiment, "texture"))
-        output = self._output(experiment, name)
-        return output, self._blobs.path(output.digest)
+        return self._outputs.output(experiment_id, name)
 
     async def converted(
         self, experiment_id: str, name: str, file_format: Format, depth: Literal[8, 16] | None = None
@@ -217,12 +209,7 @@ class Service:
         BusyError
             If the engine did not get to it soon enough; trying again later helps.
         """
-        experiment = await asyncio.to_thread(self._store.get, experiment_id)
-        output = self._output(experiment, name)
-        if depth == 16:
-            self._pictures.check_deep(file_format)
-            output = await self._deep_texture(experiment, output)
-        return await asyncio.to_thread(self._pictures.converted, output, file_format)
+        return await self._outputs.converted(experiment_id, name, file_format, depth)
 
     async def synthesize(
         self,
@@ -297,57 +284,10 @@ class Service:
         self._executor.cancel(experiment.id)
         self._delete(self._store.get(experiment.id))
 
-    def _output(self, experiment: Experiment, name: str) -> Output:
-        output = experiment.output(name)
-        if output is not None:
-            return output
-        if not experiment.status.finished:
-            raise NotFoundError("This experiment has no outputs yet: it is not finished.")
-        names = ", ".join(output.name for output in experiment.outputs if output.listed)
-        raise NotFoundError(f"This experiment has no output {name!r}. It has: {names or 'none'}.")
-
-    async def _deep_texture(self, experiment: Experiment, output: Output) -> Output:
-        if output.name != "texture":
-            raise InvalidInputError("Only the texture itself comes at 16 bits per channel.", "depth")
-        deep = experiment.output(DEEP_TEXTURE)
-        if deep is not None:
-            return deep
-        job = f"{experiment.id}{DEEP}"
-        if self._executor.snapshot(job) is None:
-            if self.waiting >= self._settings.queue_limit:
-                raise BusyError("Too many experiments wait already. Try again in a minute.")
-            self._failures.pop(job, None)
-            self._executor.submit(job)
-        if not await self._following.left(job, DEEP_SECONDS):
-            raise BusyError("The texture at 16 bits is still being computed. Try again in a minute.")
-        deep = (await asyncio.to_thread(self._store.get, experiment.id)).output(DEEP_TEXTURE)
-        if deep is None:
-            raise AppError(self._failures.pop(job, "The texture at 16 bits could not be computed. Try again."))
-        return deep
-
     def _ended(self, job: str, failure: str | None) -> None:
         """Record a failure of the worker itself; what a worker computed it has recorded."""
-        if failure is None:
-            return
-        if job.endswith(DEEP):
-            self._failures[job] = failure
-            return
-        try:
-            self._store.fail(job, failure)
-        except Exception:
-            log.exception("the failure of experiment %s could not be recorded; it will be tried again", job)
-            self._unrecorded[job] = failure
-
-    def _keep_house(self) -> None:
-        waited = 0.0
-        while not self._closing.wait(RECORD_SECONDS):
-            try:
-                for job in list(self._unrecorded):
-                    self._store.fail(job, self._unrecorded[job])
-                    del self._unrecorded[job]
-                waited += RECORD_SECONDS
-                if waited >= PRUNE_SECONDS:
-                    waited = 0.0
-                    self.prune(None)
-            except Exception:
-                log.exception("housekeeping failed; it will be tried again")
+        if failure is not None:
+            if job.endswith(DEEP):
+                self._outputs.failed(job, failure)
+            else:
+                self._housekeeping.record_failure(job, failure)

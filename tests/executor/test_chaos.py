@@ -100,7 +100,8 @@ def test_an_embedded_scheduler_that_dies_is_replaced(tmp_path: Path) -> None:
         bench.until(lambda: bench.started("polite-1") and bench.started("polite-2"))
         bench.cancel("polite-2")
         cluster = bench.executor._engine._cluster
-        asyncio.run_coroutine_threadsafe(cluster.scheduler.close(), cluster.loop.asyncio_loop).result(SECONDS)
+        closing = asyncio.run_coroutine_threadsafe(cluster.scheduler.close(), cluster.loop.asyncio_loop)
+        closing.exception(SECONDS)  # it may stumble over what it was doing: dead it is either way
         bench.until(lambda: not bench.executor.ready or len(bench.started("polite-1")) == 2)
         assert bench.end_of("quick") is None
         bench.until(lambda: len(bench.started("polite-1")) == 2)

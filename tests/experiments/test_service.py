@@ -93,6 +93,7 @@ def test_thumbnails_are_hidden_and_a_preview_is_made_when_asked_for(service: Ser
         output, path = service.output(experiment.id, name)
         assert not output.listed
         assert max(Image.open(path).size) <= 320
+        assert Image.open(path).size == (output.width, output.height)
     output, path = service.output(experiment.id, ".preview")
     assert Image.open(path).size == (output.width, output.height) == (1200, 630)
 
