@@ -5,6 +5,7 @@ from functools import partial
 from typing import Literal
 
 import numpy as np
+import scipy.fft
 from numpy.typing import NDArray
 from pydantic import Field as Option
 from pydantic.config import JsonDict
@@ -14,8 +15,8 @@ from app.images.png import PngWriter
 from app.methods.model import Context, Method, Picture, Reference, Size, Slot, Source, StillParams
 from app.synthesis.field import Field, Noise, row_blocks
 from app.synthesis.levels import Extent, Levels
-from app.synthesis.periodic import periodic_spectrum, smooth_planes
-from app.synthesis.spectral import log_modulus
+from app.synthesis.periodic import smooth_planes
+from app.synthesis.spectral import LogModulus
 from app.synthesis.spot import centre, make_spot
 from app.synthesis.team import Team
 
@@ -97,8 +98,35 @@ class _Run:
         )
         self._peak = 2**context.depth - 1
 
-    def texture(self) -> Picture:
-        field = self._field(0.0, {"spot": 0.1, "random phase": 0.4, "range": 0.55, "texture": 0.8}).randomise()
+    def pictures(self) -> Iterator[Picture]:
+        field = self._field({"spot": 0.1, "random phase": 0.4, "range": 0.55, "texture": 0.8}).randomise()
+        mean = field.mean
+        yield self._texture(field)
+        del field
+        h = self._source.pixels
+        yield self._picture("crop", "Crop", h.transpose(2, 0, 1), 0.82)
+        self._context.progress("periodic", 0.82)
+        h = centre(h, self._height, self._width)
+        smooth = smooth_planes(h, self._context.threads)
+        p = np.empty_like(smooth)
+        np.subtract(h.transpose(2, 0, 1), smooth, out=p)
+        yield self._picture("periodic", "Periodic component", p, 0.84)
+        smooth += mean.astype(np.float32)[:, None, None]
+        yield self._picture("smooth", "Smooth component, the mean added", smooth, 0.86)
+        del smooth
+        power = self._power(p)  # before the spot, which takes p's place
+        if p.shape[1:] == (self._height, self._width):
+            yield self._picture("spot", "Spot", p, 0.88)
+        else:
+            spot = make_spot(p, mean, self._height, self._width, self._params.alpha, self._params.window)
+            yield self._write("spot", "Extended spot", self._height, self._width, spot.rows, 0.88)
+            del spot
+        del p
+        yield self._spectrum("input-spectrum", "Log-modulus of the periodic component", power, h.shape[1], 0.9)
+        power = self._field({"spot": 0.92, "output-spectrum": 0.98}, 0.9, "output-spectrum").power()
+        yield self._spectrum("output-spectrum", "Log-modulus of the texture", power, self._width, 1.0)
+
+    def _texture(self, field: Field) -> Picture:
         low, high = 0.0, float(self._source.peak)
         if self._params.range == "stretch":
             extent = Extent(self._source.peak)
@@ -108,40 +136,27 @@ class _Run:
         field.emit(Levels(writer.write, len(field.mean), low, high, self._peak))
         return Picture("texture", "Texture", self._width, self._height, writer.finish())
 
-    def _field(self, start: float, ends: dict[str, float]) -> Field:
-        """The noise's field; each of its stages goes from the end of the one before to its own in ``ends``."""
+    def _field(self, ends: dict[str, float], start: float = 0.0, said: str | None = None) -> Field:
+        """The noise's field; each of its stages goes from the end of the one before to its own in ``ends``.
+
+        ``said`` is what they are all called in the progress; by default each has its own name.
+        """
         begins = dict(zip(ends, [start, *ends.values()], strict=False))
 
         def progress(stage: str, part: float) -> None:
-            self._context.progress(stage, begins[stage] + part * (ends[stage] - begins[stage]))
+            self._context.progress(said or stage, begins[stage] + part * (ends[stage] - begins[stage]))
 
         return Field(self._source.pixels, self._noise, self._team, progress)
 
-    def pictures(self) -> Iterator[Picture]:
-        yield self.texture()
-        h = self._source.pixels
-        yield self._picture("crop", "Crop", h.transpose(2, 0, 1), 0.82)
-        h = centre(h, self._height, self._width)
-        mean = h.mean(axis=(0, 1), dtype=np.float64)
-        smooth = smooth_planes(h, self._context.threads)
-        p = h.transpose(2, 0, 1) - smooth
-        yield self._picture("periodic", "Periodic component", p, 0.84)
-        yield self._picture(
-            "smooth", "Smooth component, the mean added", smooth + mean.astype(np.float32)[:, None, None], 0.86
-        )
-        del smooth
-        if p.shape[1:] == (self._height, self._width):
-            yield self._picture("spot", "Spot", p, 0.88)
-        else:
-            spot = make_spot(p, mean, self._height, self._width, self._params.alpha, self._params.window)
-            yield self._write("spot", "Extended spot", self._height, self._width, spot.rows, 0.88)
-        del p
-        spectrum = periodic_spectrum(h)
-        power = np.einsum("yxc,yxc->yx", spectrum, spectrum.conj()).real / spectrum.shape[2]
-        del spectrum
-        yield self._spectrum("input-spectrum", "Log-modulus of the periodic component", power, h.shape[1], 0.9)
-        power = self._field(0.9, {"spot": 0.92, "output spectrum": 0.98}).power()
-        yield self._spectrum("output-spectrum", "Log-modulus of the texture", power, self._width, 1.0)
+    def _power(self, planes: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Squared modulus of planes on the half spectrum, the mean over the channels."""
+        self._context.progress("input-spectrum", 0.86)
+        power = np.zeros((planes.shape[1], planes.shape[2] // 2 + 1), np.float32)
+        for plane in planes:
+            spectrum = scipy.fft.rfft2(plane, workers=self._context.threads)
+            power += spectrum.real**2 + spectrum.imag**2
+        power /= len(planes)
+        return power
 
     def _picture(self, name: str, title: str, values: NDArray[np.float32], end: float) -> Picture:
         height, width = values.shape[1:]
@@ -168,9 +183,10 @@ class _Run:
 
     def _spectrum(self, name: str, title: str, power: NDArray[np.float32], width: int, end: float) -> Picture:
         writer = PngWriter(width, len(power), 1, 8)
+        picture = LogModulus(power, width)
 
         def write(block: tuple[int, int]) -> None:
-            writer.write(block[0], log_modulus(power, width, *block)[:, :, None])
+            writer.write(block[0], picture.rows(*block)[:, :, None])
 
         self._team.run(
             write, row_blocks(len(power)), lambda part: self._context.progress(name, end - 0.02 * (1 - part))

@@ -67,15 +67,6 @@ def row_blocks(height: int) -> list[tuple[int, int]]:
     return [(first, min(first + ROWS, height)) for first in range(0, height, ROWS)]
 
 
-def _blocks_of(channels: int, rows: int, width: int) -> list[Complex]:
-    """Uninitialised blocks of columns (channels, rows, columns), in one piece of memory that huge pages can back."""
-    memory = np.empty(channels * rows * (width // 2 + 1), np.complex64)
-    return [
-        memory[channels * rows * first : channels * rows * last].reshape(channels, rows, last - first)
-        for first, last in column_blocks(width)
-    ]
-
-
 class Field:
     """A noise whose columns are done: `emit` gives its rows, any number of times.
 
@@ -107,54 +98,47 @@ class Field:
             self._smooth = SmoothSpectrum(h)
             # What is taken off first need only be near the mean: the rest of the mean is read off the transforms.
             near = h[::8, ::8].mean(axis=(0, 1), dtype=np.float64).astype(np.float32)
-            self._blocks = self._transform_rows(h.transpose(2, 0, 1), near)
-            self.mean = near + self._blocks[0][:, :, 0].real.sum(axis=1, dtype=np.float64) / (height * width)
+            self._spectrum = self._transform_rows(h.transpose(2, 0, 1), near)
+            self.mean = near + self._spectrum[:, :, 0].real.sum(axis=1, dtype=np.float64) / (height * width)
         elif noise.add_smooth:
             raise ValueError("The smooth component can be added only to a texture of the sample's own size.")
         else:
             p = periodic_planes(h, team.threads)
             self.mean = p.mean(axis=(1, 2), dtype=np.float64)
             spot = make_spot(p, self.mean, noise.height, noise.width, noise.alpha, noise.window)
-            self._blocks = self._transform_rows(spot.planes, np.zeros(channels, np.float32))
+            self._spectrum = self._transform_rows(spot.planes, np.zeros(channels, np.float32))
         if not np.isfinite(self.mean).all():
             raise ValueError("The sample holds values that are not finite.")
 
-    def _transform_rows(self, planes: Real, offsets: Real) -> list[Complex]:
-        """Blocks of columns (C, rows of the spot, columns) of the transforms along x of planes − offsets, centred."""
+    def _transform_rows(self, planes: Real, offsets: Real) -> Complex:
+        """Transforms along x of planes − offsets, centred: (C, rows of the spot, width // 2 + 1)."""
         (channels, high, wide), width = planes.shape, self.noise.width
         left = (width - wide) // 2
-        blocks, spectra = column_blocks(width), _blocks_of(channels, high, width)
+        spectrum = np.empty((channels, high, width // 2 + 1), np.complex64)
 
         def transform(rows: tuple[int, int]) -> None:
             begin, end = rows
             padded = np.zeros((end - begin, width), np.float32)
-            inner = padded[:, left : left + wide]
             for channel, offset in enumerate(offsets):
-                inner[...] = planes[channel, begin:end]
-                inner -= offset
-                half = scipy.fft.rfft(padded, workers=1)
-                for (first, last), target in zip(blocks, spectra, strict=True):
-                    target[channel, begin:end] = half[:, first:last]
+                np.subtract(planes[channel, begin:end], offset, out=padded[:, left : left + wide])
+                spectrum[channel, begin:end] = scipy.fft.rfft(padded, workers=1)
 
         self._team.run(transform, row_blocks(high), lambda part: self._progress("spot", part))
-        return spectra
+        return spectrum
 
-    def _spectra(self, index: int, targets: Complex) -> Iterator[Complex]:
-        """One block of columns of the noise's spectrum, channel by channel, without the mean.
-
-        ``targets`` (C, height, columns) is overwritten, each plane of it only while its channel is asked for.
-        """
-        noise, spot = self.noise, self._blocks[index]
-        first, last = column_blocks(noise.width)[index]
-        random = random_block(noise.height, noise.width, (first, last), noise.seed, noise.rayleigh)
+    def _spectra(self, block: tuple[int, int]) -> Iterator[Complex]:
+        """One block of columns of the noise's spectrum, channel by channel, without the mean."""
+        noise, (first, last) = self.noise, block
+        random = random_block(noise.height, noise.width, block, noise.seed, noise.rayleigh)
         smooths = self._smooth.block(first, last) if self._smooth else None
-        for target, rows in zip(targets, spot, strict=True):
-            if targets is not spot:
-                end = self._top + len(rows)
-                target[: self._top] = 0
-                target[self._top : end] = rows
-                target[end:] = 0
-            spectrum: Complex = scipy.fft.fft(target, axis=0, overwrite_x=True, workers=1)
+        for rows in self._spectrum[:, :, first:last]:
+            spectrum: Complex
+            if len(rows) == noise.height:
+                spectrum = scipy.fft.fft(rows, axis=0, workers=1)
+            else:
+                padded = np.zeros((noise.height, last - first), np.complex64)
+                padded[self._top : self._top + len(rows)] = rows
+                spectrum = scipy.fft.fft(padded, axis=0, overwrite_x=True, workers=1)
             if smooths is not None:
                 smooth = next(smooths)
                 spectrum -= smooth
@@ -169,19 +153,17 @@ class Field:
 
     def randomise(self) -> "Field":
         """Do the columns; needed once before `emit`."""
-        height, width = self.noise.height, self.noise.width
-        done = self._blocks
-        if done[0].shape[1] < height:
-            done = _blocks_of(len(self.mean), height, width)
+        noise, done = self.noise, self._spectrum
+        if done.shape[1] < noise.height:
+            done = np.empty((len(self.mean), noise.height, noise.width // 2 + 1), np.complex64)
 
-        def transform(index: int) -> None:
-            for plane, spectrum in zip(done[index], self._spectra(index, done[index]), strict=True):
-                inverse = scipy.fft.ifft(spectrum, axis=0, overwrite_x=True, workers=1)
-                if not np.may_share_memory(inverse, plane):
-                    plane[:] = inverse
+        def transform(block: tuple[int, int]) -> None:
+            columns = slice(*block)
+            for plane, spectrum in zip(done, self._spectra(block), strict=True):
+                plane[:, columns] = scipy.fft.ifft(spectrum, axis=0, overwrite_x=True, workers=1)
 
-        self._team.run(transform, range(len(done)), lambda part: self._progress("random phase", part))
-        self._blocks = done
+        self._team.run(transform, column_blocks(noise.width), lambda part: self._progress("random phase", part))
+        self._spectrum = done
         return self
 
     def power(self) -> Real:
@@ -191,16 +173,16 @@ class Field:
         -------
         ndarray of float32, shape (height, width // 2 + 1)
         """
-        channels, height = len(self.mean), self.noise.height
-        power = np.zeros((height, self.noise.width // 2 + 1), np.float32)
+        noise = self.noise
+        power = np.zeros((noise.height, noise.width // 2 + 1), np.float32)
 
-        def measure(index: int) -> None:
-            first, last = column_blocks(self.noise.width)[index]
-            for spectrum in self._spectra(index, np.empty((channels, height, last - first), np.complex64)):
-                power[:, first:last] += spectrum.real**2 + spectrum.imag**2
-            power[:, first:last] /= channels
+        def measure(block: tuple[int, int]) -> None:
+            columns = power[:, slice(*block)]
+            for spectrum in self._spectra(block):
+                columns += spectrum.real**2 + spectrum.imag**2
+            columns /= len(self.mean)
 
-        self._team.run(measure, range(len(self._blocks)), lambda part: self._progress("output spectrum", part))
+        self._team.run(measure, column_blocks(noise.width), lambda part: self._progress("output-spectrum", part))
         return power
 
     def emit(self, sink: Sink, stage: str = "texture") -> None:
@@ -217,8 +199,7 @@ class Field:
 
     def _planes(self, begin: int, end: int) -> Iterator[Real]:
         for channel, mean in enumerate(self.mean.astype(np.float32)):
-            half = np.concatenate([columns[channel, begin:end] for columns in self._blocks], axis=1)
-            plane: Real = scipy.fft.irfft(half, n=self.noise.width, workers=1)
+            plane: Real = scipy.fft.irfft(self._spectrum[channel, begin:end], n=self.noise.width, workers=1)
             plane += mean
             yield plane
 

@@ -135,8 +135,8 @@ def random_spectrum(height: int, width: int, seed: int, rayleigh: bool = False) 
 DECADES = 4.0
 
 
-def log_modulus(power: Real, width: int, first: int, last: int) -> NDArray[np.uint8]:
-    """Rows ``first`` to ``last`` − 1 of the picture of a spectrum: centred, grey, logarithmic.
+class LogModulus:
+    """The picture of a spectrum: centred, grey, logarithmic.
 
     Grey 255 is the greatest modulus away from the origin, and 0 is four powers of ten below it or less. The origin,
     which only tells the mean, counts as the greatest.
@@ -147,18 +147,22 @@ def log_modulus(power: Real, width: int, first: int, last: int) -> NDArray[np.ui
         Squared modulus on the half spectrum; for a colour image the mean over the channels.
     width : int
         Of the image.
-
-    Returns
-    -------
-    ndarray of uint8, shape (last − first, width)
     """
-    height = len(power)
-    greatest = max(power.flat[1:].max(initial=0), np.finfo(np.float32).tiny)
-    k = (np.arange(first, last) - height // 2) % height
-    right, left = power[k, : (width + 1) // 2], power[-k % height, width // 2 : 0 : -1]
-    whole = np.minimum(np.concatenate([left, right], axis=1), greatest) / greatest
-    if first <= height // 2 < last:
-        whole[height // 2 - first, width // 2] = 1
-    decades = np.log10(np.maximum(whole, 10 ** (-2 * DECADES))) / 2
-    grey: NDArray[np.uint8] = (255.5 + 255 / DECADES * decades).clip(0, 255).astype(np.uint8)
-    return grey
+
+    def __init__(self, power: Real, width: int) -> None:
+        self._power, self._width = power, width
+        away = (power[:1, 1:].max(initial=0), power[1:].max(initial=0), np.finfo(np.float32).tiny)
+        self._greatest = np.float32(max(away))
+
+    def rows(self, first: int, last: int) -> NDArray[np.uint8]:
+        """Rows ``first`` to ``last`` − 1, shape (last − first, width)."""
+        power, width, greatest = self._power, self._width, self._greatest
+        height = len(power)
+        k = (np.arange(first, last) - height // 2) % height
+        right, left = power[k, : (width + 1) // 2], power[-k % height, width // 2 : 0 : -1]
+        whole = np.minimum(np.concatenate([left, right], axis=1), greatest) / greatest
+        if first <= height // 2 < last:
+            whole[height // 2 - first, width // 2] = 1
+        decades = np.log10(np.maximum(whole, 10 ** (-2 * DECADES))) / 2
+        grey: NDArray[np.uint8] = (255.5 + 255 / DECADES * decades).clip(0, 255).astype(np.uint8)
+        return grey

@@ -101,7 +101,7 @@ def test_the_pictures_are_made_one_by_one_the_texture_first():
     run = entry.run([crop()], entry.params(), Context(8, 1, lambda stage, fraction: stages.append(stage)))
     assert stages == []
     assert next(run).name == "texture"
-    assert "output spectrum" not in stages
+    assert "output-spectrum" not in stages
     run.close()
 
 
