@@ -46,7 +46,7 @@ lock: $(VENV)/.ready-dev ## resolve the dependencies of pyproject.toml anew
 
 # For every platform and every Python that pyproject.toml admits; `make lock UPGRADE=--upgrade` takes newer versions.
 LOCK_OPTIONS = --quiet --no-config --universal --python-version 3.11 --generate-hashes $(UPGRADE) \
-	--default-index https://pypi.org/simple --custom-compile-command "make lock"
+	--no-emit-index-url --custom-compile-command "make lock"
 
 clean: ## remove the environment and caches, not ./data
 	rm -rf $(VENV) build dist *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis .schemathesis

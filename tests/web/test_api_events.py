@@ -72,7 +72,8 @@ def test_a_client_that_goes_is_followed_no_longer(site, until):
     with site.gate.closed():
         record = site.run(wait=False).json()
         with site.visitor() as client, client.stream("GET", f"{record['url']}/events") as response:
-            next(events(response))
+            stream = events(response)  # kept: an iterator that is dropped closes its connection
+            next(stream)
             until(lambda: record["id"] in listeners)
         until(lambda: record["id"] not in listeners)
 

@@ -88,7 +88,8 @@ def test_every_static_file_a_page_names_is_there(site: Any) -> None:
                 assert site.client.get(name).status_code == 200, name
 
 
-def test_home_shows_samples_and_newest_results(site: Any, experiment: dict[str, Any]) -> None:
+def test_home_shows_samples_and_newest_results(site: Any) -> None:
+    experiment = site.finished()
     page = get(site, "/")
     assert page.all("a", href="/samples/gravel_gray")
     assert page.all("a", href=f"/experiments/{experiment['id']}")

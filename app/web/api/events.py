@@ -2,7 +2,7 @@
 
 from collections.abc import AsyncGenerator, AsyncIterator
 from contextlib import aclosing
-from typing import Annotated, cast
+from typing import Annotated
 
 from fastapi import APIRouter, Depends, Header, Request
 from fastapi.sse import EventSourceResponse, ServerSentEvent
@@ -53,7 +53,7 @@ async def experiment_events(
     """
     status: Status | None = None
     number = 0
-    async with aclosing(cast("AsyncGenerator[Snapshot]", service.watch(experiment_id))) as snapshots:
+    async with aclosing(service.watch(experiment_id)) as snapshots:
         while snapshot := await unless_stopping(request, _next(snapshots)):
             data = {
                 "status": snapshot.status,
