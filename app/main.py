@@ -17,7 +17,7 @@ from app.experiments.service import Service
 from app.settings import ROOT, Settings
 from app.store.blobs import FileBlobs
 from app.store.sql import SqlStore
-from app.web import docs, health, pages, problems
+from app.web import docs, health, pages, problems, uploads
 from app.web.api import events, experiments, methods, outputs, samples, synthesize
 from app.web.head import HeadAsGet
 from app.web.limits import BodyLimit
@@ -88,6 +88,7 @@ def create_app(settings: Settings | None = None, service: Service | None = None)
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     """Start the engine beside the web, which answers from the first moment, and stop it with the web."""
     service: Service = app.state.service
+    await asyncio.to_thread(uploads.remove_abandoned, app.state.settings.data_dir)
     starting = asyncio.create_task(asyncio.to_thread(service.start))
     starting.add_done_callback(_log_failure)
     loop, stopping = asyncio.get_running_loop(), app.state.stopping

@@ -1,8 +1,9 @@
 """Receives a form with one file, the file straight to disk under the data directory."""
 
 import tempfile
+import time
 from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, BinaryIO
@@ -22,7 +23,8 @@ if TYPE_CHECKING:
 
 MAX_FIELDS = 64
 MAX_FIELD_BYTES = 16 * 1024
-INCOMING = "incoming"
+INCOMING, PREFIX = "incoming", "upload-"
+ABANDONED_SECONDS = 3600.0  # without a write: longer than any upload that still goes on, here or in another web process
 
 
 @dataclass
@@ -160,9 +162,17 @@ async def _read(request: Request, boundary: bytes, target: BinaryIO) -> Form:
     return Form(parts.fields, Path(target.name) if has_file else None, parts.filename or None)
 
 
+def remove_abandoned(data_dir: Path) -> None:
+    """Remove the files of uploads that a web process left behind when it was killed."""
+    for path in (data_dir / INCOMING).glob(f"{PREFIX}*"):
+        with suppress(FileNotFoundError):  # another process on this directory was faster
+            if time.time() - path.stat().st_mtime > ABANDONED_SECONDS:
+                path.unlink()
+
+
 def _open(directory: Path) -> BinaryIO:
     directory.mkdir(parents=True, exist_ok=True)
-    return tempfile.NamedTemporaryFile(dir=directory, prefix="upload-", delete=False)  # type: ignore[return-value]
+    return tempfile.NamedTemporaryFile(dir=directory, prefix=PREFIX, delete=False)  # type: ignore[return-value]
 
 
 def _decoded(text: bytes) -> str:
