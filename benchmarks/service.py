@@ -27,7 +27,7 @@ CROP = Rectangle(0, 0, 512, 512)
 SINGLE_RUNS = 20
 MANY = 60
 CLIENTS = 4
-MEBIBYTE = 1 << 20
+MEGABYTE = 1_000_000
 
 
 def body(seed: int, **parameters: object) -> dict[str, Any]:
@@ -136,8 +136,8 @@ def memory(service: Served) -> None:
     took = time.perf_counter() - took
     above = {process: _peak(process) - idle[process.pid] for process in family if process.is_running()}
     hungriest = max(above, key=lambda process: above[process])
-    note = f"the worker's idle {idle[hungriest.pid] / MEBIBYTE:.0f} MiB; {took:.1f} s"
-    line("peak memory of 512² → 4096² RGB above idle", above[hungriest] / MEBIBYTE, "MiB", 300, note=note)
+    note = f"the worker's idle {idle[hungriest.pid] / MEGABYTE:.0f} MB; {took:.1f} s"
+    line("peak memory of 512² → 4096² RGB above idle", above[hungriest] / MEGABYTE, "MB", 300, note=note)
 
 
 def _peak(process: psutil.Process) -> int:
