@@ -31,7 +31,7 @@ Complex = NDArray[np.complex64]
 Real = NDArray[np.float32]
 
 
-CHUNK = 1024  # rows of a matrix product, few enough for BLAS to stay in the calling thread
+PRODUCT = 1 << 16  # values of a matrix product of inner dimension 4, few enough for BLAS to stay in the calling thread
 
 
 @lru_cache(maxsize=32)
@@ -68,14 +68,15 @@ class SmoothSpectrum:
     def block(self, first: int, last: int) -> Iterator[Complex]:
         """Columns ``first`` to ``last`` − 1 of ŝ, shape (H, last − first), channel by channel."""
         columns = slice(2 * first, 2 * last)
+        step = max(1, PRODUCT // (2 * (last - first)))
         inverse = self._sines[:, None] + self._cross_sines[columns]
         if first == 0:
             inverse[0, :2] = np.inf
         np.reciprocal(inverse, out=inverse)
         for left, right in zip(self._left, self._right, strict=True):
             smooth = np.empty_like(inverse)
-            for y in range(0, self._height, CHUNK):
-                np.matmul(left[y : y + CHUNK], right[:, columns], out=smooth[y : y + CHUNK])
+            for y in range(0, self._height, step):
+                np.matmul(left[y : y + step], right[:, columns], out=smooth[y : y + step])
             smooth *= inverse
             yield smooth.view(np.complex64)
 
