@@ -228,20 +228,19 @@ class Service:
         AppError
             Any of those of `add_sample`, `submit` and `converted`; `ConflictError` if the run failed.
         """
-        sample = await asyncio.to_thread(self.add_sample, upload, None)
-        experiment = None
+        begin = asyncio.to_thread(self._begin, upload, method, crop, parameters)
+        begun = asyncio.ensure_future(
+            begin
+        )  # goes on to its end if the caller hangs up: only then is known what to forget
         try:
-            request = NewExperiment(method, (NewInput(sample.id, crop),), parameters, listed=False)
-            submit = partial(self._submit, request, new_token(), transient=True)
-            experiment = await asyncio.to_thread(submit)
+            experiment = await asyncio.shield(begun)
             finished = await self.wait(experiment.id, float("inf"))
             if finished.status is not Status.SUCCEEDED:
                 raise ConflictError(finished.error or "The run was cancelled.")
             path, media_type = await self.converted(experiment.id, "texture", file_format, depth)
             return await asyncio.to_thread(path.read_bytes), media_type
         finally:
-            forget = partial(self._forget, sample, experiment)
-            await asyncio.shield(asyncio.get_running_loop().run_in_executor(None, forget))
+            await asyncio.shield(self._forgotten(begun))
 
     def prune(self, older_than: timedelta | None) -> Pruned:
         """Remove what nothing refers to and, where ``older_than`` is given, experiments that finished longer ago."""
@@ -276,10 +275,21 @@ class Service:
         self._executor.cancel(f"{experiment.id}{DEEP}")
         self._housekeeping.delete(experiment)
 
-    def _forget(self, sample: Sample, experiment: Experiment | None) -> None:
-        if experiment is None:
+    def _begin(self, upload: Path, method: str, crop: Rectangle | None, parameters: Mapping[str, Any]) -> Experiment:
+        sample = self.add_sample(upload, None)
+        try:
+            request = NewExperiment(method, (NewInput(sample.id, crop),), parameters, listed=False)
+            return self._submit(request, new_token(), transient=True)
+        except BaseException:
             self._housekeeping.remove_sample(sample.id)
-            return
+            raise
+
+    async def _forgotten(self, begun: asyncio.Future[Experiment]) -> None:
+        await asyncio.wait({begun})
+        if begun.exception() is None:
+            await asyncio.to_thread(self._forget, begun.result())
+
+    def _forget(self, experiment: Experiment) -> None:
         self._store.cancel(experiment.id)
         self._executor.cancel(experiment.id)
         self._delete(self._store.get(experiment.id))

@@ -2,6 +2,7 @@
 
 import asyncio
 import shutil
+import threading
 from collections.abc import Callable
 from dataclasses import replace
 from datetime import timedelta
@@ -356,6 +357,34 @@ def test_a_caller_who_hangs_up_cancels_the_run(
 
     asyncio.run(hanging_up())
     assert service.waiting == 0
+    assert files(settings) == set()
+
+
+def test_a_caller_who_hangs_up_while_it_is_submitted_leaves_nothing_behind(
+    settings: Settings, upload: Path, make_service: Callable[..., Service], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    service = make_service()
+    added, hung_up = threading.Event(), threading.Event()
+    add = service._store.add
+
+    def slow_add(experiment: Experiment) -> None:
+        add(experiment)
+        added.set()
+        assert hung_up.wait(SECONDS)
+
+    monkeypatch.setattr(service._store, "add", slow_add)
+
+    async def hanging_up() -> None:
+        work = asyncio.create_task(service.synthesize(upload, method="rpn", crop=None, parameters={}))
+        assert await asyncio.to_thread(added.wait, SECONDS)
+        work.cancel()
+        asyncio.get_running_loop().call_soon(hung_up.set)
+        with pytest.raises(asyncio.CancelledError):
+            await work
+
+    asyncio.run(hanging_up())
+    assert service.waiting == 0
+    assert sum(service.counts().values()) == 0
     assert files(settings) == set()
 
 
