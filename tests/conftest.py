@@ -1,12 +1,31 @@
-"""The order of the tests."""
+"""The order of the tests, and the browser that some of them drive."""
 
+import os
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 BROWSER = Path(__file__).parent / "acceptance"
+CHROMIUM = os.environ.get("CHROMIUM", "/usr/bin/chromium")
+ARGUMENTS = [
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Put the browser's tests last: Playwright keeps an event loop running here, where others start their own."""
     items.sort(key=lambda item: BROWSER in item.path.parents)
+
+
+@pytest.fixture(scope="session")
+def chromium() -> dict[str, Any]:
+    """How Playwright launches Debian's Chromium, or the one that ``CHROMIUM`` names."""
+    return {"executable_path": CHROMIUM, "args": ARGUMENTS}

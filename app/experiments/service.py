@@ -228,10 +228,8 @@ class Service:
         AppError
             Any of those of `add_sample`, `submit` and `converted`; `ConflictError` if the run failed.
         """
-        begin = asyncio.to_thread(self._begin, upload, method, crop, parameters)
-        begun = asyncio.ensure_future(
-            begin
-        )  # goes on to its end if the caller hangs up: only then is known what to forget
+        # It goes on to its end if the caller hangs up: only then is known what to forget.
+        begun = asyncio.ensure_future(asyncio.to_thread(self._begin, upload, method, crop, parameters))
         try:
             experiment = await asyncio.shield(begun)
             finished = await self.wait(experiment.id, float("inf"))

@@ -3,25 +3,13 @@
 import pytest
 from playwright.sync_api import sync_playwright
 
-CHROMIUM = "/usr/bin/chromium"
-ARGUMENTS = [
-    "--headless",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-]
-
 
 @pytest.mark.acceptance
-def test_the_docs_show_every_route_and_load_nothing_from_elsewhere(site):
+def test_the_docs_show_every_route_and_load_nothing_from_elsewhere(site, chromium):
     paths = site.client.get("/api/v1/openapi.json").json()["paths"]
     requested, complaints = [], []
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=ARGUMENTS)
+        browser = playwright.chromium.launch(**chromium)
         page = browser.new_page()
         page.on("request", lambda request: requested.append(request.url))
         page.on("requestfailed", lambda request: complaints.append(request.url))
