@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
+from app.methods.explanation import Explanation, Reference
+
 MAX_SEED = 2**53 - 1  # the largest whole number that JSON readers in JavaScript keep exactly
 
 
@@ -68,27 +70,41 @@ class Context:
     threads: int
     progress: Progress
 
+    def between(self, begin: float, end: float) -> Progress:
+        """A progress callback whose fractions 0–1 are the part of the run from ``begin`` to ``end``."""
+
+        def scaled(stage: str, fraction: float) -> None:
+            self.progress(stage, begin + fraction * (end - begin))
+
+        return scaled
+
+
+@dataclass(frozen=True)
+class Fact:
+    """A number that a run found out, such as the radius that holds half of a texton's energy."""
+
+    name: str
+    title: str
+    value: float
+    unit: str = ""
+
 
 @dataclass(frozen=True)
 class Picture:
-    """One picture a method gives back, already a PNG file."""
+    """One picture a method gives back, already a PNG file.
+
+    ``kind`` says what it is: a ``texture`` that was synthesised (the structure meter measures it, and pages show it
+    at once), or a ``view`` of something on the way, such as a spectrum. ``facts`` go into the experiment's
+    diagnostics.
+    """
 
     name: str
     title: str
     width: int
     height: int
     png: bytes
-
-
-@dataclass(frozen=True)
-class Reference:
-    """Where a method comes from."""
-
-    authors: str
-    title: str
-    venue: str
-    year: int
-    url: str
+    kind: Literal["texture", "view"] = "view"
+    facts: tuple[Fact, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -98,6 +114,11 @@ class Size:
     width: int
     height: int
     channels: int
+
+
+def first_size(sizes: Sequence[Size]) -> tuple[int, int]:
+    """Width and height of the first input."""
+    return sizes[0].width, sizes[0].height
 
 
 @dataclass(frozen=True)
@@ -111,15 +132,28 @@ class Method:
     title, summary : str
         One line each; the summary says what it computes.
     inputs : tuple of Slot
+        Those it needs.
     params : type of pydantic.BaseModel
         Every field has a title, a description and a default; ``json_schema_extra={"advanced": True}`` puts it
         under "advanced".
     references : tuple of Reference
         The main one first.
+    explanation : Explanation
+        Its page.
     check : callable ``(sizes, params) -> None``
         Raises `app.errors.InvalidInputError` for a combination that cannot run, before anything is queued.
     run : callable ``(sources, params, context) -> iterator of Picture``
         Yields its pictures as they are made, the main one, ``texture``, first; what is not asked for is not computed.
+        Among them is ``crop``, and ``crop-2``, … for further inputs (see `app.methods.pictures.crops`).
+    more : int
+        How many further inputs like the last one it takes.
+    size : callable ``(sizes) -> (width, height)``
+        Size of the texture where none is asked for; default: the first input's.
+    toroidal : callable ``(params) -> bool``
+        Whether the texture tiles without a seam.
+    phase : bool
+        Whether it is driven by the random phase that `rpn` and `adsn` share: at one seed and size all such methods
+        have the same phase.
     """
 
     name: str
@@ -128,5 +162,10 @@ class Method:
     inputs: tuple[Slot, ...]
     params: type[StillParams]
     references: tuple[Reference, ...]
+    explanation: Explanation
     check: Callable[[Sequence[Size], Any], None]
     run: Callable[[Sequence[Source], Any, Context], Iterator[Picture]]
+    more: int = 0
+    size: Callable[[Sequence[Size]], tuple[int, int]] = first_size
+    toroidal: Callable[[Any], bool] = lambda params: True
+    phase: bool = False

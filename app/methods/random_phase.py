@@ -1,48 +1,28 @@
-"""RPN and ADSN as methods: their parameters, and the pictures they give back."""
+"""What RPN and ADSN have in common as methods: parameters, checks, and the pictures they give back."""
 
 from collections.abc import Callable, Iterator, Sequence
-from functools import partial
 from typing import Literal
 
 import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 from pydantic import Field as Option
-from pydantic.config import JsonDict
 
 from app.errors import InvalidInputError
 from app.images.png import PngWriter
-from app.methods.model import Context, Method, Picture, Reference, Size, Slot, Source, StillParams
+from app.methods.model import Context, Picture, Size, Slot, Source
+from app.methods.options import ADVANCED, SpotParams
+from app.methods.pictures import log_modulus, refuse_infinite
 from app.synthesis.field import Field, Noise, row_blocks
 from app.synthesis.levels import Extent, Levels
 from app.synthesis.periodic import smooth_planes
-from app.synthesis.spectral import LogModulus
 from app.synthesis.spot import centre, make_spot
 from app.synthesis.team import Team
 
-ADVANCED: JsonDict = {"advanced": True}
 
-
-class RandomPhaseParams(StillParams):
+class RandomPhaseParams(SpotParams):
     """Parameters of RPN and ADSN."""
 
-    alpha: float = Option(
-        0.1,
-        ge=0,
-        le=0.5,
-        title="Transition α",
-        description="Width of the band along the border of the crop, as a part of its side, in which it fades out "
-        "before it is pasted into a larger image; only for textures larger than the crop. 0 cuts sharply and may "
-        "leave streaks.",
-        json_schema_extra=ADVANCED,
-    )
-    window: Literal["bump", "gaussian"] = Option(
-        "bump",
-        title="Window",
-        description="How the crop fades out along its border: 'bump' is the smooth step of the IPOL article (usual α: "
-        "0.1), 'gaussian' the profile of the TIP article (usual α: 0.2).",
-        json_schema_extra=ADVANCED,
-    )
     phase: Literal["add", "replace"] = Option(
         "add",
         title="Phase",
@@ -68,7 +48,7 @@ class RandomPhaseParams(StillParams):
     )
 
 
-def _check(sizes: Sequence[Size], params: RandomPhaseParams) -> None:
+def check(sizes: Sequence[Size], params: RandomPhaseParams) -> None:
     """Refuse what cannot run: the smooth component has the crop's size and no other."""
     size = sizes[0]
     width, height = params.width or size.width, params.height or size.height
@@ -122,9 +102,10 @@ class _Run:
             yield self._write("spot", "Extended spot", self._height, self._width, spot.rows, 0.88)
             del spot
         del p
-        yield self._spectrum("input-spectrum", "Log-modulus of the periodic component", power, h.shape[1], 0.9)
-        power = self._field({"spot": 0.92, "output-spectrum": 0.98}, 0.9, "output-spectrum").power()
-        yield self._spectrum("output-spectrum", "Log-modulus of the texture", power, self._width, 1.0)
+        yield log_modulus("input-spectrum", "Log-modulus of the periodic component", power, h.shape[1], self._context)
+        power = self._field({"spot": 0.92, "output-spectrum": 0.99}, 0.9, "output-spectrum").power()
+        yield log_modulus("output-spectrum", "Log-modulus of the texture", power, self._width, self._context)
+        self._context.progress("output-spectrum", 1.0)
 
     def _texture(self, field: Field) -> Picture:
         low, high = 0.0, float(self._source.peak)
@@ -134,7 +115,7 @@ class _Run:
             low, high = extent.low, extent.high
         writer = PngWriter(self._width, self._height, len(field.mean), self._context.depth)
         field.emit(Levels(writer.write, len(field.mean), low, high, self._peak))
-        return Picture("texture", "Texture", self._width, self._height, writer.finish())
+        return Picture("texture", "Texture", self._width, self._height, writer.finish(), "texture")
 
     def _field(self, ends: dict[str, float], start: float = 0.0, said: str | None = None) -> Field:
         """The noise's field; each of its stages goes from the end of the one before to its own in ``ends``.
@@ -181,70 +162,19 @@ class _Run:
         self._team.run(write, row_blocks(height), lambda part: self._context.progress(name, end - 0.02 * (1 - part)))
         return Picture(name, title, width, height, writer.finish())
 
-    def _spectrum(self, name: str, title: str, power: NDArray[np.float32], width: int, end: float) -> Picture:
-        writer = PngWriter(width, len(power), 1, 8)
-        picture = LogModulus(power, width)
 
-        def write(block: tuple[int, int]) -> None:
-            writer.write(block[0], picture.rows(*block)[:, :, None])
-
-        self._team.run(
-            write, row_blocks(len(power)), lambda part: self._context.progress(name, end - 0.02 * (1 - part))
-        )
-        return Picture(name, title, width, len(power), writer.finish())
-
-
-def _run(
-    sources: Sequence[Source], params: RandomPhaseParams, context: Context, *, rayleigh: bool
-) -> Iterator[Picture]:
+def run(sources: Sequence[Source], params: RandomPhaseParams, context: Context, *, rayleigh: bool) -> Iterator[Picture]:
+    """The texture, then the steps that lead to it."""
     source = sources[0]
-    _check([Size(source.pixels.shape[1], source.pixels.shape[0], source.pixels.shape[2])], params)
-    if not np.isfinite(source.pixels).all():
-        raise InvalidInputError("The crop holds values that are not finite numbers: save it anew.", "inputs.0")
+    check([Size(source.pixels.shape[1], source.pixels.shape[0], source.pixels.shape[2])], params)
+    refuse_infinite(sources)
     with Team(context.threads) as team:
         yield from _Run(source, params, context, team, rayleigh).pictures()
 
 
-_INPUTS = (Slot("sample", "Sample", "A photograph; crop a homogeneous region of it."),)
-_IPOL = Reference(
-    "B. Galerne, Y. Gousseau, J.-M. Morel",
-    "Micro-Texture Synthesis by Phase Randomization",
-    "Image Processing On Line 1",
-    2011,
-    "https://doi.org/10.5201/ipol.2011.ggm_rpn",
-)
-_TIP = Reference(
-    "B. Galerne, Y. Gousseau, J.-M. Morel",
-    "Random Phase Textures: Theory and Synthesis",
-    "IEEE Transactions on Image Processing 20(1)",
-    2011,
-    "https://doi.org/10.1109/TIP.2010.2052822",
-)
-_MOISAN = Reference(
-    "L. Moisan",
-    "Periodic plus Smooth Image Decomposition",
-    "Journal of Mathematical Imaging and Vision 39(2)",
-    2011,
-    "https://doi.org/10.1007/s10851-010-0227-1",
-)
+def toroidal(params: RandomPhaseParams) -> bool:
+    """Whether the texture tiles: the smooth component does not."""
+    return not params.add_smooth
 
-RPN = Method(
-    name="rpn",
-    title="Random phase noise (RPN)",
-    summary="Keeps the Fourier modulus of the crop and draws its phase at random.",
-    inputs=_INPUTS,
-    params=RandomPhaseParams,
-    references=(_IPOL, _TIP, _MOISAN),
-    check=_check,
-    run=partial(_run, rayleigh=False),
-)
-ADSN = Method(
-    name="adsn",
-    title="Asymptotic discrete spot noise (ADSN)",
-    summary="The Gaussian texture that has the crop's mean and covariance.",
-    inputs=_INPUTS,
-    params=RandomPhaseParams,
-    references=(_TIP, _IPOL, _MOISAN),
-    check=_check,
-    run=partial(_run, rayleigh=True),
-)
+
+INPUTS = (Slot("sample", "Sample", "A photograph; crop a homogeneous region of it."),)

@@ -1,8 +1,9 @@
 """The registry: every method of the service, by name."""
 
 from app.errors import NotFoundError
+from app.methods.adsn import ADSN
 from app.methods.model import Method
-from app.methods.random_phase import ADSN, RPN
+from app.methods.rpn import RPN
 
 METHODS: dict[str, Method] = {
     "rpn": RPN,

@@ -1,0 +1,62 @@
+"""`adsn`: asymptotic discrete spot noise."""
+
+from functools import partial
+
+from app.methods.explanation import Exhibit, Explanation, Figure, Formula
+from app.methods.model import Method
+from app.methods.random_phase import INPUTS, RandomPhaseParams, check, run, toroidal
+from app.methods.references import IPOL_RPN, PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
+
+EXPLANATION = Explanation(
+    what=(
+        "Throw copies of a spot onto a plane at random and add them up: that is a discrete spot noise. With ever more "
+        "copies, centred and normalised, it tends to a Gaussian texture, the asymptotic discrete spot noise: the "
+        "crop, without its mean, convolved with a Gaussian white noise.",
+        "In the Fourier domain it differs from random phase noise by a factor alone: its modulus is multiplied by a "
+        "Rayleigh noise. From one seed both have the same phase, so that they can be compared point by point.",
+    ),
+    formulas=(
+        Formula(
+            r"Z = m + \frac{1}{\sqrt{MN}}\, (h - m) * Y",
+            r"$h$ is the crop of $M \times N$ pixels, or its extended spot, $m$ its mean and $Y$ a Gaussian white "
+            r"noise of variance 1, the same for every channel.",
+        ),
+        Formula(
+            r"\operatorname{Cov}\bigl(Z(x), Z(y)\bigr) = \frac{1}{MN} \sum_{t} (h(t) - m)\,(h(t + y - x) - m)^{T}",
+            r"Its covariance is the autocorrelation of the crop: it is the Gaussian texture with the sample's mean and "
+            r"covariance.",
+        ),
+    ),
+    fails=(
+        "A Gaussian texture is told by its mean and covariance: it is symmetric about its mean, has no edges and no "
+        "isolated objects. Where random phase noise fails it fails, too.",
+        "Where the spectrum holds a few frequencies only, its Rayleigh modulus may all but drop one of them, which "
+        "random phase noise never does: compare both on two sinusoids.",
+    ),
+    figures=(
+        Figure(
+            "A Gaussian texture",
+            "The crop and the asymptotic discrete spot noise that has its mean and covariance.",
+            (Exhibit("adsn", (("rockface_pink", "190,60,256,256"),), {"width": 512, "height": 512, "seed": 2}),),
+        ),
+        Figure(
+            "What it cannot do",
+            "Stones and joints do not have a Gaussian distribution.",
+            (Exhibit("adsn", (("stonewall_rockwall", "128,128,256,256"),), {"seed": 2}),),
+        ),
+    ),
+)
+
+ADSN = Method(
+    name="adsn",
+    title="Asymptotic discrete spot noise (ADSN)",
+    summary="The Gaussian texture that has the crop's mean and covariance.",
+    inputs=INPUTS,
+    params=RandomPhaseParams,
+    references=(RANDOM_PHASE_TEXTURES, IPOL_RPN, PERIODIC_PLUS_SMOOTH),
+    explanation=EXPLANATION,
+    check=check,
+    run=partial(run, rayleigh=True),
+    toroidal=toroidal,
+    phase=True,
+)

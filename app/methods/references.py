@@ -1,0 +1,54 @@
+"""Articles that several methods come from."""
+
+from app.methods.explanation import Reference
+
+IPOL_RPN = Reference(
+    "B. Galerne, Y. Gousseau, J.-M. Morel",
+    "Micro-Texture Synthesis by Phase Randomization",
+    "Image Processing On Line 1",
+    2011,
+    "https://doi.org/10.5201/ipol.2011.ggm_rpn",
+    pages="213--237",
+)
+RANDOM_PHASE_TEXTURES = Reference(
+    "B. Galerne, Y. Gousseau, J.-M. Morel",
+    "Random Phase Textures: Theory and Synthesis",
+    "IEEE Transactions on Image Processing 20(1)",
+    2011,
+    "https://doi.org/10.1109/TIP.2010.2052822",
+    pages="257--267",
+)
+PERIODIC_PLUS_SMOOTH = Reference(
+    "L. Moisan",
+    "Periodic plus Smooth Image Decomposition",
+    "Journal of Mathematical Imaging and Vision 39(2)",
+    2011,
+    "https://doi.org/10.1007/s10851-010-0227-1",
+    pages="161--179",
+)
+TEXTON = Reference(
+    "A. Desolneux, L. Moisan, S. Ronsin",
+    "A Compact Representation of Random Phase and Gaussian Textures",
+    "IEEE International Conference on Acoustics, Speech and Signal Processing (ICASSP)",
+    2012,
+    "https://doi.org/10.1109/ICASSP.2012.6288142",
+    kind="inproceedings",
+    pages="1381--1384",
+)
+GAUSSIAN_MIXING = Reference(
+    "G.-S. Xia, S. Ferradans, G. Peyré, J.-F. Aujol",
+    "Synthesizing and Mixing Stationary Gaussian Texture Models",
+    "SIAM Journal on Imaging Sciences 7(1)",
+    2014,
+    "https://doi.org/10.1137/130918010",
+    pages="476--508",
+)
+SHARPNESS = Reference(
+    "G. Blanchet, L. Moisan",
+    "An Explicit Sharpness Index Related to Global Phase Coherence",
+    "IEEE International Conference on Acoustics, Speech and Signal Processing (ICASSP)",
+    2012,
+    "https://doi.org/10.1109/ICASSP.2012.6288070",
+    kind="inproceedings",
+    pages="1065--1068",
+)
