@@ -1,6 +1,7 @@
 """The pages' template environment, and what every template is given."""
 
 from collections.abc import Mapping
+from math import sqrt
 from pathlib import Path
 from typing import Any
 
@@ -8,10 +9,12 @@ from fastapi import Request
 from fastapi.templating import Jinja2Templates
 from starlette.responses import Response
 
+from app.experiments.meter import MICRO, STRUCTURED, reading
 from app.methods.registry import METHODS
 from app.settings import ROOT
 
 TEMPLATES = Jinja2Templates(directory=Path(ROOT) / "templates")
+METER_END = 0.4  # the index at which the bar is full; bricks lie at 0.3
 TEMPLATES.env.trim_blocks = True
 TEMPLATES.env.lstrip_blocks = True
 
@@ -27,7 +30,19 @@ def label(method: str) -> str:
     return method.upper() if method.upper() in METHODS[method].title else method.replace("-", " ").capitalize()
 
 
-TEMPLATES.env.filters["label"] = label
+def meter_place(delta: float) -> float:
+    """Where a structure index stands on its bar, in percent: by its square root, for most photographs are near 0.
+
+    Examples
+    --------
+    >>> [meter_place(delta) for delta in (-0.01, 0.1, 0.4, 0.6)]
+    [0.0, 50.0, 100.0, 100.0]
+    """
+    return round(min(100.0, 100 * sqrt(max(delta, 0.0) / METER_END)), 1)
+
+
+TEMPLATES.env.filters.update(label=label, reading=reading, meter_place=meter_place)
+TEMPLATES.env.globals["meter_limits"] = (MICRO, STRUCTURED)
 
 
 def render(request: Request, template: str, context: Mapping[str, Any], status: int = 200) -> Response:

@@ -1,0 +1,86 @@
+"""Is it a micro-texture? What the structure index of a crop means, in plain words."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Literal
+
+from app.experiments.model import Sample
+from app.experiments.ports import BlobStore
+from app.images.crop import Rectangle
+from app.images.read import read_crop
+from app.synthesis.structure import CENTRE, Structure, structure_index
+
+Verdict = Literal["micro-texture", "borderline", "structured"]
+
+MICRO, STRUCTURED = 0.06, 0.09
+KEPT = 1024  # crops whose index is remembered: the photographs of pages, and the way a crop was dragged
+
+
+@dataclass(frozen=True)
+class Reading:
+    """What a structure index says of random phase models: in one word, and in a sentence."""
+
+    verdict: Verdict
+    words: str
+
+
+READINGS: dict[Verdict, Reading] = {
+    reading.verdict: reading
+    for reading in (
+        Reading("micro-texture", "Micro-texture: random phase models will reproduce it."),
+        Reading("borderline", "Borderline: random phase models keep its grain, and blur the objects in it."),
+        Reading("structured", "Structured: random phase models will dissolve its edges and objects."),
+    )
+}
+
+
+def reading(delta: float) -> Reading:
+    """What a structure index means.
+
+    Examples
+    --------
+    >>> [reading(delta).verdict for delta in (0.02, 0.07, 0.2)]
+    ['micro-texture', 'borderline', 'structured']
+    """
+    if delta < MICRO:
+        return READINGS["micro-texture"]
+    return READINGS["borderline" if delta < STRUCTURED else "structured"]
+
+
+class Meter:
+    """Measures crops of samples, and remembers what it found.
+
+    Parameters
+    ----------
+    blobs : BlobStore
+    """
+
+    def __init__(self, blobs: BlobStore) -> None:
+        self._blobs = blobs
+        self._measured = lru_cache(KEPT)(self._measure)
+
+    def structure(self, sample: Sample, crop: Rectangle | None, sigma: float) -> Structure:
+        """The structure index of a crop, of all of the sample if None; of a large one, its centre 1024 × 1024 pixels.
+
+        Raises
+        ------
+        InvalidInputError
+            If the crop reaches outside the sample or holds transparent pixels.
+        """
+        area = crop or Rectangle(0, 0, sample.width, sample.height)
+        return self._measured(sample.digest, measured(area.within(sample.width, sample.height)), sigma)
+
+    def _measure(self, digest: str, area: Rectangle, sigma: float) -> Structure:
+        return structure_index(read_crop(self._blobs.path(digest), area), sigma)
+
+
+def measured(area: Rectangle) -> Rectangle:
+    """The part of a rectangle that is measured: its centre, where it is larger than that.
+
+    Examples
+    --------
+    >>> measured(Rectangle(10, 10, 1124, 200))
+    Rectangle(x=60, y=10, width=1024, height=200)
+    """
+    width, height = min(area.width, CENTRE), min(area.height, CENTRE)
+    return Rectangle(area.x + (area.width - width) // 2, area.y + (area.height - height) // 2, width, height)
