@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
 from enum import StrEnum
-from typing import Any
+from typing import Any, Literal
 
 from app.images.crop import Rectangle
 
@@ -57,7 +57,10 @@ class ExperimentInput:
 
 @dataclass(frozen=True)
 class Output:
-    """A named file of an experiment. Names that start with ``.`` are the service's own and are not listed."""
+    """A named file of an experiment. Names that start with ``.`` are the service's own and are not listed.
+
+    ``kind`` is as in `app.methods.model.Picture`: a ``texture`` that was synthesised, or a ``view``.
+    """
 
     name: str
     title: str
@@ -66,6 +69,7 @@ class Output:
     height: int
     bytes: int
     digest: str
+    kind: Literal["texture", "view"] = "view"
 
     @property
     def listed(self) -> bool:
@@ -76,8 +80,9 @@ class Output:
 class Experiment:
     """One run: method, inputs and parameters (complete: defaults and sizes filled in), and what came of it.
 
-    ``owner`` is the SHA-256 (hex) of the owner's token. ``timings`` are seconds by stage, in order. A ``transient`` one
-    is made for a single answer: only its main output is computed, and it goes with the answer.
+    ``owner`` is the SHA-256 (hex) of the owner's token. ``timings`` are seconds by stage, in order. ``diagnostics``
+    is what was measured of it (see `app.experiments.diagnostics`). A ``transient`` one is made for a single answer:
+    only its main output is computed, and it goes with the answer.
     """
 
     id: str
@@ -91,6 +96,7 @@ class Experiment:
     attempts: int = 0
     outputs: tuple[Output, ...] = ()
     timings: Mapping[str, float] = field(default_factory=dict)
+    diagnostics: Mapping[str, Any] = field(default_factory=dict)
     error: str | None = None
     started_at: datetime | None = None
     finished_at: datetime | None = None

@@ -4,7 +4,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import AbstractContextManager
 from datetime import datetime
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
 from app.experiments.model import Experiment, Output, Page, Sample, Snapshot
 from app.methods.model import Progress
@@ -40,7 +40,13 @@ class ExperimentStore(Protocol):
         """Mark it running and count the attempt; None if it is already finished, cancelled or deleted."""
         ...
 
-    def succeed(self, experiment_id: str, outputs: Sequence[Output], timings: Mapping[str, float]) -> bool:
+    def succeed(
+        self,
+        experiment_id: str,
+        outputs: Sequence[Output],
+        timings: Mapping[str, float],
+        diagnostics: Mapping[str, Any],
+    ) -> bool:
         """Record outputs and success in one transaction; nothing and False if it is no longer running."""
         ...
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Literal
 
 from app.errors import AppError, CancelledError, DeletedError, NotFoundError
+from app.experiments.diagnostics import diagnose
 from app.experiments.model import Experiment, Output, Status
 from app.experiments.ports import BlobStore, ExperimentStore
 from app.images.read import read_crop
@@ -79,10 +80,11 @@ def _compute(
     if experiment.transient:
         pictures = islice(pictures, 1)
     with _staged(blobs, pictures) as staged:
+        diagnostics = {} if experiment.transient else diagnose(sources, staged, stages)
         stages("writing", 1.0)
         with blobs.lease():
             outputs = [_kept(blobs, picture, path) for picture, path in staged]
-            store.succeed(experiment.id, outputs, stages.seconds())
+            store.succeed(experiment.id, outputs, stages.seconds(), diagnostics)
 
 
 def _add_deep_texture(
@@ -140,7 +142,7 @@ def _staged(blobs: BlobStore, pictures: Iterable[Picture]) -> Iterator[list[tupl
 def _kept(blobs: BlobStore, picture: Picture, path: Path) -> Output:
     size = path.stat().st_size
     digest = blobs.put_file(path)
-    return Output(picture.name, picture.title, "image/png", picture.width, picture.height, size, digest)
+    return Output(picture.name, picture.title, "image/png", picture.width, picture.height, size, digest, picture.kind)
 
 
 class Stages:

@@ -1,26 +1,26 @@
 """The use cases. Pages, API and command line talk to this and to nothing below it."""
 
-import asyncio
 import threading
-from collections.abc import AsyncGenerator, Mapping
+from collections.abc import AsyncGenerator, Mapping, Sequence
 from dataclasses import replace
 from datetime import timedelta
 from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
-from app.errors import BusyError, ConflictError, ForbiddenError
+from app.errors import BusyError, ForbiddenError
 from app.experiments.cache import FileCache
+from app.experiments.direct import Direct
 from app.experiments.following import Following
 from app.experiments.housekeeping import Housekeeping, Pruned
 from app.experiments.intake import SampleIntake
-from app.experiments.model import Experiment, Output, Page, Sample, Snapshot, Status
+from app.experiments.model import Experiment, Output, Page, Sample, Snapshot
 from app.experiments.outputs import Outputs
 from app.experiments.ownership import new_token, same, token_digest
 from app.experiments.pictures import Pictures
 from app.experiments.ports import BlobStore, Executor, ExperimentStore
 from app.experiments.run import DEEP
-from app.experiments.submission import NewExperiment, NewInput, prepare
+from app.experiments.submission import NewExperiment, prepare
 from app.images.convert import Format
 from app.images.crop import Rectangle
 from app.settings import Settings
@@ -58,6 +58,9 @@ class Service:
             cache,
             sample_keep=timedelta(hours=settings.sample_keep_hours),
             longest_run=timedelta(hours=1, seconds=settings.time_limit),
+        )
+        self._direct = Direct(
+            self._intake, self._housekeeping, self._outputs, self._following, self._submit_transient, self._forget
         )
         self._closing = threading.Event()
         self._background: list[threading.Thread] = []
@@ -213,32 +216,35 @@ class Service:
 
     async def synthesize(
         self,
-        upload: Path,
+        uploads: Sequence[Path],
         *,
         method: str,
-        crop: Rectangle | None,
+        crops: Sequence[Rectangle | None],
         parameters: Mapping[str, Any],
         file_format: Format = "png",
         depth: Literal[8, 16] | None = None,
     ) -> tuple[bytes, str]:
-        """A texture straight from a file: the picture and its media type. Nothing of it is kept.
+        """A texture straight from files: the picture and its media type. Nothing of it is kept, the files included.
+
+        Parameters
+        ----------
+        uploads : sequence of Path
+            One file for each input.
+        method : str
+        crops : sequence of Rectangle or None
+            Of the files, in their order; for those at the end that are left out, and for None, all of the picture.
+        parameters : mapping
+        file_format, depth
+            Of the answer.
 
         Raises
         ------
         AppError
             Any of those of `add_sample`, `submit` and `converted`; `ConflictError` if the run failed.
         """
-        # It goes on to its end if the caller hangs up: only then is known what to forget.
-        begun = asyncio.ensure_future(asyncio.to_thread(self._begin, upload, method, crop, parameters))
-        try:
-            experiment = await asyncio.shield(begun)
-            finished = await self.wait(experiment.id, float("inf"))
-            if finished.status is not Status.SUCCEEDED:
-                raise ConflictError(finished.error or "The run was cancelled.")
-            path, media_type = await self.converted(experiment.id, "texture", file_format, depth)
-            return await asyncio.to_thread(path.read_bytes), media_type
-        finally:
-            await asyncio.shield(self._forgotten(begun))
+        return await self._direct.synthesize(
+            uploads, method=method, crops=crops, parameters=parameters, file_format=file_format, depth=depth
+        )
 
     def prune(self, older_than: timedelta | None) -> Pruned:
         """Remove what nothing refers to and, where ``older_than`` is given, experiments that finished longer ago."""
@@ -261,6 +267,9 @@ class Service:
         self._executor.submit(experiment.id)
         return experiment
 
+    def _submit_transient(self, request: NewExperiment) -> Experiment:
+        return self._submit(request, new_token(), transient=True)
+
     def _owned(self, experiment_id: str, token: str | None) -> Experiment:
         experiment = self._store.get(experiment_id)
         if not self.owns(experiment, token):
@@ -272,20 +281,6 @@ class Service:
     def _delete(self, experiment: Experiment) -> None:
         self._executor.cancel(f"{experiment.id}{DEEP}")
         self._housekeeping.delete(experiment)
-
-    def _begin(self, upload: Path, method: str, crop: Rectangle | None, parameters: Mapping[str, Any]) -> Experiment:
-        sample = self.add_sample(upload, None)
-        try:
-            request = NewExperiment(method, (NewInput(sample.id, crop),), parameters, listed=False)
-            return self._submit(request, new_token(), transient=True)
-        except BaseException:
-            self._housekeeping.remove_sample(sample.id)
-            raise
-
-    async def _forgotten(self, begun: asyncio.Future[Experiment]) -> None:
-        await asyncio.wait({begun})
-        if begun.exception() is None:
-            await asyncio.to_thread(self._forget, begun.result())
 
     def _forget(self, experiment: Experiment) -> None:
         self._store.cancel(experiment.id)

@@ -66,12 +66,7 @@ def prepare(
         If the texture would have too many pixels.
     """
     method = method_named(request.method)
-    if len(request.inputs) != len(method.inputs):
-        wanted = ", ".join(slot.name for slot in method.inputs)
-        raise InvalidInputError(
-            f"The method {method.name} takes {len(method.inputs)} input(s) ({wanted}), not {len(request.inputs)}.",
-            "inputs",
-        )
+    _check_count(method, len(request.inputs))
     inputs, sizes = [], []
     for index, wanted_input in enumerate(request.inputs):
         found = sample(wanted_input.sample)
@@ -79,9 +74,8 @@ def prepare(
         inputs.append(ExperimentInput(found.id, crop))
         sizes.append(Size(crop.width, crop.height, found.channels))
     params = _params(method, request.parameters)
-    params = params.model_copy(
-        update={"width": params.width or sizes[0].width, "height": params.height or sizes[0].height}
-    )
+    width, height = method.size(sizes)
+    params = params.model_copy(update={"width": params.width or width, "height": params.height or height})
     pixels = (params.width or 0) * (params.height or 0)
     if pixels > max_output_pixels:
         raise TooLargeError(
@@ -98,6 +92,16 @@ def prepare(
         owner=owner,
         created_at=datetime.now(UTC),
     )
+
+
+def _check_count(method: Method, given: int) -> None:
+    least, most = len(method.inputs), len(method.inputs) + method.more
+    if least <= given <= most:
+        return
+    wanted = str(least) if least == most else f"{least} to {most}"
+    names = ", ".join(slot.name for slot in method.inputs)
+    noun = "input" if most == 1 else "inputs"
+    raise InvalidInputError(f"The method {method.name} takes {wanted} {noun} ({names}), not {given}.", "inputs")
 
 
 def _crop(wanted: NewInput, sample: Sample, field: str, transparent: Callable[[Sample, Rectangle], bool]) -> Rectangle:

@@ -30,6 +30,7 @@ def row_of_experiment(experiment: Experiment) -> dict[str, Any]:
     row = {name: value for name, value in vars(experiment).items() if name not in {"inputs", "outputs"}}
     row["parameters"] = dict(experiment.parameters)
     row["timings"] = dict(experiment.timings)
+    row["diagnostics"] = dict(experiment.diagnostics)
     return row
 
 
@@ -53,7 +54,7 @@ def experiments_of(rows: Sequence[Row], input_rows: Sequence[Row], output_rows: 
     outputs: dict[str, list[Output]] = defaultdict(list)
     for row in output_rows:
         outputs[row.experiment].append(
-            Output(row.name, row.title, row.media_type, row.width, row.height, row.bytes, row.digest)
+            Output(row.name, row.title, row.media_type, row.width, row.height, row.bytes, row.digest, row.kind)
         )
     return [
         Experiment(

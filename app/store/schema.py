@@ -60,6 +60,7 @@ experiments = sa.Table(
     sa.Column("status", sa.Text, nullable=False),
     sa.Column("attempts", sa.Integer, nullable=False),
     sa.Column("timings", sa.JSON, nullable=False),
+    sa.Column("diagnostics", sa.JSON, nullable=False, server_default=sa.text("'{}'")),
     sa.Column("error", sa.Text),
     sa.Column("started_at", Moment),
     sa.Column("finished_at", Moment, index=True),
@@ -90,6 +91,7 @@ outputs = sa.Table(
     sa.Column("height", sa.Integer, nullable=False),
     sa.Column("bytes", sa.BigInteger, nullable=False),
     sa.Column("digest", sa.Text, nullable=False, index=True),
+    sa.Column("kind", sa.Text, nullable=False, server_default="view"),
 )
 
 deleted = sa.Table("deleted", metadata, sa.Column("id", sa.Text, primary_key=True))
@@ -110,7 +112,22 @@ def connect(url: str) -> Engine:
         if engine.dialect.name == "postgresql":
             connection.execute(sa.select(sa.func.pg_advisory_xact_lock(SCHEMA_LOCK)))
         metadata.create_all(connection)
+        _add_new_columns(connection)
     return engine
+
+
+def _add_new_columns(connection: Connection) -> None:
+    """Bring the tables of an earlier version up to date: what was added since has a default for their rows."""
+    known = sa.inspect(connection)
+    for table in metadata.sorted_tables:
+        present = {column["name"] for column in known.get_columns(table.name)}
+        for column in table.columns:
+            if column.name not in present:
+                declared = sa.schema.CreateColumn(column).compile(dialect=connection.dialect)
+                connection.execute(sa.text(f"ALTER TABLE {table.name} ADD COLUMN {declared}"))
+                if column is outputs.c.kind:
+                    main = outputs.c.name == "texture"
+                    connection.execute(outputs.update().where(main).values(kind="texture"))
 
 
 def writing(engine: Engine) -> AbstractContextManager[Connection]:

@@ -145,12 +145,23 @@ class SqlStore:
                 return None
             return self._read(connection, experiments.select().where(experiments.c.id == experiment_id))[0]
 
-    def succeed(self, experiment_id: str, outputs_: Sequence[Output], timings: Mapping[str, float]) -> bool:
+    def succeed(
+        self,
+        experiment_id: str,
+        outputs_: Sequence[Output],
+        timings: Mapping[str, float],
+        diagnostics: Mapping[str, Any],
+    ) -> bool:
         with writing(self._engine) as connection:
             changed = connection.execute(
                 experiments.update()
                 .where(experiments.c.id == experiment_id, experiments.c.status == Status.RUNNING)
-                .values(status=Status.SUCCEEDED, timings=dict(timings), finished_at=_now())
+                .values(
+                    status=Status.SUCCEEDED,
+                    timings=dict(timings),
+                    diagnostics=dict(diagnostics),
+                    finished_at=_now(),
+                )
             ).rowcount
             if changed and outputs_:
                 connection.execute(

@@ -66,6 +66,13 @@ def sample(service: Service, upload: Path) -> Sample:
 
 
 @pytest.fixture
+def stored(settings: Settings) -> Callable[[], set[str]]:
+    """Look up the names of all files below the data directory but the database's and the lock."""
+    kept = {"microtexture.sqlite3", "microtexture.sqlite3-wal", "microtexture.sqlite3-shm", ".lock"}
+    return lambda: {path.name for path in settings.data_dir.rglob("*") if path.is_file()} - kept
+
+
+@pytest.fixture
 def make_service(settings: Settings) -> Iterator[Callable[..., Service]]:
     """Make a service that is not started yet, on the same data; closed in the end."""
     made: list[Service] = []

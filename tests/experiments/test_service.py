@@ -2,7 +2,6 @@
 
 import asyncio
 import shutil
-import threading
 from collections.abc import Callable
 from dataclasses import replace
 from datetime import timedelta
@@ -28,6 +27,7 @@ from app.experiments.submission import NewExperiment, NewInput
 from app.images.crop import Rectangle
 from app.settings import Settings
 
+Stored = Callable[[], set[str]]
 OWNER = "the owner's token"
 SECONDS = 30.0
 
@@ -41,12 +41,6 @@ def finished(service: Service, request: NewExperiment) -> Experiment:
     experiment = asyncio.run(service.wait(service.submit(request, OWNER).id, SECONDS))
     assert experiment.status.finished
     return experiment
-
-
-def files(settings: Settings) -> set[str]:
-    """Names of all files below the data directory but the database's and the lock."""
-    kept = {"microtexture.sqlite3", "microtexture.sqlite3-wal", "microtexture.sqlite3-shm", ".lock"}
-    return {path.name for path in settings.data_dir.rglob("*") if path.is_file()} - kept
 
 
 def test_a_photograph_becomes_a_texture(service: Service, sample: Sample) -> None:
@@ -143,15 +137,15 @@ def test_a_crop_with_transparent_pixels_is_refused_and_an_opaque_one_runs(servic
     assert finished(service, opaque).status is Status.SUCCEEDED
 
 
-def test_an_upload_is_gone_whatever_comes_of_it(service: Service, upload: Path, settings: Settings) -> None:
+def test_an_upload_is_gone_whatever_comes_of_it(service: Service, upload: Path, stored: Stored) -> None:
     service.add_sample(upload, None)
     assert not upload.exists()
     upload.write_bytes(b"\x89PNG\r\n\x1a\n and no more")
-    before = files(settings)
+    before = stored()
     with pytest.raises(BrokenFileError):
         service.add_sample(upload, None)
     assert not upload.exists()
-    assert files(settings) == before
+    assert stored() == before
 
 
 def test_only_its_owner_and_the_operator_may_change_an_experiment(
@@ -173,9 +167,9 @@ def test_only_its_owner_and_the_operator_may_change_an_experiment(
 
 
 def test_deleting_removes_what_nothing_else_refers_to(
-    service: Service, sample: Sample, settings: Settings, photograph: Path
+    service: Service, sample: Sample, stored: Stored, photograph: Path
 ) -> None:
-    before = files(settings)
+    before = stored()
     assert len(before) == 1
     one, twin = (finished(service, a_request(sample, seed=1)) for _ in range(2))
     asyncio.run(service.converted(one.id, "texture", "tiff", 16))
@@ -188,7 +182,7 @@ def test_deleting_removes_what_nothing_else_refers_to(
     service.cancel_or_delete(twin.id, OWNER)
     with pytest.raises(NotFoundError):
         service.sample(sample.id)
-    assert files(settings) == set()
+    assert stored() == set()
 
 
 def test_deleting_keeps_a_sample_that_another_experiment_uses(service: Service, sample: Sample) -> None:
@@ -321,73 +315,6 @@ def test_the_full_rendition_is_the_stored_file_and_small_ones_are_bounded(servic
     assert service.rendition(sample.id, 200)[0].exists()
 
 
-def test_a_texture_straight_from_a_file_leaves_nothing_behind(
-    service: Service, settings: Settings, photograph: Path, upload: Path
-) -> None:
-    parameters = {"seed": 4}
-    experiment = finished(service, NewExperiment("adsn", (NewInput(_copied(service, photograph).id),), parameters))
-    expected = service.output(experiment.id, "texture")[1].read_bytes()
-    service.cancel_or_delete(experiment.id, OWNER)
-    picture, media_type = asyncio.run(service.synthesize(upload, method="adsn", crop=None, parameters=parameters))
-    assert (picture, media_type) == (expected, "image/png")
-    assert files(settings) == set()
-    assert sum(service.counts().values()) == 0
-
-
-def test_a_refused_texture_straight_from_a_file_leaves_nothing_behind(
-    service: Service, settings: Settings, upload: Path
-) -> None:
-    with pytest.raises(InvalidInputError):
-        asyncio.run(service.synthesize(upload, method="rpn", crop=Rectangle(0, 0, 999, 9), parameters={}))
-    assert files(settings) == set()
-
-
-def test_a_caller_who_hangs_up_cancels_the_run(
-    settings: Settings, upload: Path, make_service: Callable[..., Service]
-) -> None:
-    service = make_service()
-
-    async def hanging_up() -> None:
-        work = asyncio.create_task(service.synthesize(upload, method="rpn", crop=None, parameters={}))
-        while service.waiting == 0:
-            await asyncio.sleep(0.005)
-        work.cancel()
-        with pytest.raises(asyncio.CancelledError):
-            await work
-
-    asyncio.run(hanging_up())
-    assert service.waiting == 0
-    assert files(settings) == set()
-
-
-def test_a_caller_who_hangs_up_while_it_is_submitted_leaves_nothing_behind(
-    settings: Settings, upload: Path, make_service: Callable[..., Service], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    service = make_service()
-    added, hung_up = threading.Event(), threading.Event()
-    add = service._store.add
-
-    def slow_add(experiment: Experiment) -> None:
-        add(experiment)
-        added.set()
-        assert hung_up.wait(SECONDS)
-
-    monkeypatch.setattr(service._store, "add", slow_add)
-
-    async def hanging_up() -> None:
-        work = asyncio.create_task(service.synthesize(upload, method="rpn", crop=None, parameters={}))
-        assert await asyncio.to_thread(added.wait, SECONDS)
-        work.cancel()
-        asyncio.get_running_loop().call_soon(hung_up.set)
-        with pytest.raises(asyncio.CancelledError):
-            await work
-
-    asyncio.run(hanging_up())
-    assert service.waiting == 0
-    assert sum(service.counts().values()) == 0
-    assert files(settings) == set()
-
-
 def test_a_failed_run_says_why(service: Service, sample: Sample, monkeypatch: pytest.MonkeyPatch) -> None:
     def failing(*_: object) -> None:
         raise MemoryError
@@ -401,7 +328,9 @@ def test_a_failed_run_says_why(service: Service, sample: Sample, monkeypatch: py
         service.output(experiment.id, "texture")
 
 
-def test_pruning_removes_old_experiments_and_strays_only(service: Service, sample: Sample, settings: Settings) -> None:
+def test_pruning_removes_old_experiments_and_strays_only(
+    service: Service, sample: Sample, settings: Settings, stored: Stored
+) -> None:
     experiment = finished(service, a_request(sample))
     stray = settings.data_dir / "files" / "00" / ("00" * 32)
     stray.parent.mkdir(exist_ok=True)
@@ -412,7 +341,7 @@ def test_pruning_removes_old_experiments_and_strays_only(service: Service, sampl
     assert gone.experiments == 1
     with pytest.raises(DeletedError):
         service.get(experiment.id)
-    assert files(settings) == set()
+    assert stored() == set()
 
 
 def test_bundled_photographs_are_taken_in_once(settings: Settings, make_service: Callable[..., Service]) -> None:

@@ -17,6 +17,7 @@ from app.store.sql import SqlStore
 
 START = datetime(2026, 3, 1, 12, 0, 0, 123456, tzinfo=UTC)
 NUMBERS = count()
+MEASURED = {"structure": {"inputs": [0.01], "outputs": [-0.002]}, "facts": [{"name": "radius", "value": 3.5}]}
 
 
 def a_sample(**values: object) -> Sample:
@@ -48,7 +49,8 @@ def succeeded(store: SqlStore, sample: Sample, **values: object) -> Experiment:
     experiment = an_experiment(sample, **values)
     store.add(experiment)
     store.start(experiment.id)
-    store.succeed(experiment.id, [an_output(), an_output("crop"), an_output(".thumbnail-crop")], {"b": 0.5, "a": 0.25})
+    made = [an_output(kind="texture"), an_output("crop"), an_output(".thumbnail-crop")]
+    store.succeed(experiment.id, made, {"b": 0.5, "a": 0.25}, MEASURED)
     return store.get(experiment.id)
 
 
@@ -111,13 +113,13 @@ def test_starting_again_counts_an_attempt_until_it_is_finished(store: SqlStore, 
         assert started is not None
         attempts.append((started.status, started.attempts))
     assert attempts == [(Status.RUNNING, 1), (Status.RUNNING, 2)]
-    assert store.succeed(experiment.id, [an_output()], {})
+    assert store.succeed(experiment.id, [an_output()], {}, {})
     assert store.start(experiment.id) is None
 
 
 def test_the_first_end_is_the_one_that_counts(store: SqlStore, sample: Sample) -> None:
     ends: dict[Status, Callable[[str], bool]] = {
-        Status.SUCCEEDED: lambda name: store.succeed(name, [an_output()], {}),
+        Status.SUCCEEDED: lambda name: store.succeed(name, [an_output()], {}, {}),
         Status.FAILED: lambda name: store.fail(name, "too large"),
         Status.CANCELLED: store.cancel,
     }
@@ -135,7 +137,7 @@ def test_the_first_end_is_the_one_that_counts(store: SqlStore, sample: Sample) -
 def test_only_a_running_experiment_succeeds(store: SqlStore, sample: Sample) -> None:
     experiment = an_experiment(sample)
     store.add(experiment)
-    assert not store.succeed(experiment.id, [an_output()], {})
+    assert not store.succeed(experiment.id, [an_output()], {}, {})
     assert store.get(experiment.id) == experiment
 
 
@@ -196,7 +198,7 @@ def test_a_deleted_experiment_leaves_a_tombstone_and_nothing_else(store: SqlStor
     assert store.used(digests) == set()
     assert store.page(limit=5).experiments == ()
     assert store.start(experiment.id) is None
-    assert not store.succeed(experiment.id, [an_output()], {})
+    assert not store.succeed(experiment.id, [an_output()], {}, {})
 
 
 def test_a_transient_experiment_leaves_no_tombstone(store: SqlStore, sample: Sample) -> None:
@@ -260,7 +262,7 @@ def test_writers_wait_for_one_another(store: SqlStore, sample: Sample, open_stor
         mine = stores[number % 2]
         mine.add(experiments[number])
         mine.start(experiments[number].id)
-        return mine.succeed(experiments[number].id, [an_output()], {})
+        return mine.succeed(experiments[number].id, [an_output()], {}, {})
 
     with ThreadPoolExecutor(4) as pool:
         assert all(pool.map(whole_life, range(40)))
@@ -274,7 +276,7 @@ def test_one_of_two_simultaneous_ends_wins(store: SqlStore, sample: Sample, open
         store.add(experiment)
         store.start(experiment.id)
         with ThreadPoolExecutor(2) as pool:
-            success = pool.submit(store.succeed, experiment.id, [an_output()], {})
+            success = pool.submit(store.succeed, experiment.id, [an_output()], {}, {})
             cancel = pool.submit(other.cancel, experiment.id)
             assert success.result() != cancel.result()
         recorded = store.get(experiment.id)

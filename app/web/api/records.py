@@ -1,7 +1,7 @@
 """The JSON of the API: what is sent and what comes back, and how domain objects become it."""
 
 from datetime import datetime
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, StringConstraints
 
@@ -99,6 +99,7 @@ class OutputRecord(BaseModel):
 
     name: str
     title: str
+    kind: Literal["texture", "view"] = Field(description="A texture that was synthesised, or a view on the way to it.")
     media_type: str
     width: int
     height: int
@@ -110,12 +111,37 @@ class OutputRecord(BaseModel):
         return cls(
             name=output.name,
             title=output.title,
+            kind=output.kind,
             media_type=output.media_type,
             width=output.width,
             height=output.height,
             bytes=output.bytes,
             url=f"{experiment_url}/outputs/{output.name}",
         )
+
+
+class StructureRecord(BaseModel):
+    """The structure index δ: the share of total variation that a picture lacks against its random phase textures."""
+
+    inputs: list[float] = Field(description="Of the crops.")
+    outputs: list[float] = Field(description="Of the textures, in the order of the outputs.")
+
+
+class FactRecord(BaseModel):
+    """A number that the method found out."""
+
+    output: str = Field(description="Name of the output it is about.")
+    name: str
+    title: str
+    value: float
+    unit: str
+
+
+class DiagnosticsRecord(BaseModel):
+    """What was measured of an experiment."""
+
+    structure: StructureRecord
+    facts: list[FactRecord]
 
 
 class ExperimentRecord(BaseModel):
@@ -132,6 +158,7 @@ class ExperimentRecord(BaseModel):
     listed: bool
     outputs: list[OutputRecord]
     timings: dict[str, float] = Field(description="Seconds by stage.")
+    diagnostics: DiagnosticsRecord | None = Field(description="Once it has succeeded.")
     error: str | None = Field(description="Why it failed and what to try.")
     created_at: datetime
     started_at: datetime | None
@@ -171,6 +198,7 @@ class ExperimentRecord(BaseModel):
             listed=experiment.listed,
             outputs=[OutputRecord.of(output, url) for output in experiment.outputs if output.listed],
             timings={stage: round(seconds, 6) for stage, seconds in experiment.timings.items()},
+            diagnostics=DiagnosticsRecord(**experiment.diagnostics) if experiment.diagnostics else None,
             error=experiment.error,
             created_at=experiment.created_at,
             started_at=experiment.started_at,
@@ -203,6 +231,9 @@ class ReferenceRecord(BaseModel):
     venue: str
     year: int
     url: str
+    kind: str = Field(description="Of its BibTeX entry.")
+    pages: str
+    bibtex: str
 
 
 class MethodRecord(BaseModel):
@@ -212,18 +243,20 @@ class MethodRecord(BaseModel):
     title: str
     summary: str
     inputs: list[SlotRecord]
+    more_inputs: int = Field(description="How many further inputs like the last one it takes.")
     parameters: dict[str, Any] = Field(description="JSON Schema of its parameters.")
     reference: ReferenceRecord = Field(description="The article it comes from.")
     references: list[ReferenceRecord] = Field(description="All of its articles, the main one first.")
 
     @classmethod
     def of(cls, method: Method) -> "MethodRecord":
-        references = [ReferenceRecord(**vars(reference)) for reference in method.references]
+        references = [ReferenceRecord(**vars(reference), bibtex=reference.bibtex) for reference in method.references]
         return cls(
             name=method.name,
             title=method.title,
             summary=method.summary,
             inputs=[SlotRecord(**vars(slot)) for slot in method.inputs],
+            more_inputs=method.more,
             parameters=method.params.model_json_schema(),
             reference=references[0],
             references=references,

@@ -102,9 +102,9 @@ def _wanted(request: Request, form: Form) -> dict[str, Any]:
     if depth is not None and depth not in _DEPTHS:
         raise InvalidInputError("The depth is 8 or 16 bits per channel.", "depth")
     return {
-        "upload": form.file,
+        "uploads": [form.file],
         "method": method,
-        "crop": None if crop is None else Rectangle.parse(crop),
+        "crops": [None if crop is None else Rectangle.parse(crop)],
         "parameters": fields,
         "file_format": file_format or preferred_format(request.headers.get("accept", "")),
         "depth": None if depth is None else _DEPTHS[depth],

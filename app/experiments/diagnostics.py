@@ -1,0 +1,51 @@
+"""What is measured of every experiment: how structured its crops and textures are, and what its method found out."""
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from app.images.crop import Rectangle
+from app.images.read import read_crop
+from app.methods.model import Picture, Progress, Source
+from app.synthesis.structure import CENTRE, structure_of
+
+DIGITS = 6  # of a number in the record
+
+
+def diagnose(sources: Sequence[Source], staged: Sequence[tuple[Picture, Path]], progress: Progress) -> dict[str, Any]:
+    """Measure an experiment.
+
+    Parameters
+    ----------
+    sources : sequence of Source
+        Its inputs.
+    staged : sequence of (Picture, Path)
+        Its pictures and the files they are in.
+    progress : Progress
+        Called between measurements.
+
+    Returns
+    -------
+    dict
+        ``structure``: the structure index δ of every input and of every texture, in the order of the outputs;
+        ``facts``: what the method found out, each with the name of its output.
+    """
+    textures = [(picture, path) for picture, path in staged if picture.kind == "texture"]
+    total = len(sources) + len(textures)
+    inputs: list[float] = []
+    outputs: list[float] = []
+    for source in sources:
+        progress("structure", 0.92 + 0.06 * len(inputs) / total)
+        inputs.append(round(structure_of(source.pixels).delta, DIGITS))
+    for picture, path in textures:
+        progress("structure", 0.92 + 0.06 * (len(inputs) + len(outputs)) / total)
+        outputs.append(round(structure_of(read_crop(path, _centre(picture))).delta, DIGITS))
+    facts = [{"output": picture.name, **asdict(fact)} for picture, _ in staged for fact in picture.facts]
+    return {"structure": {"inputs": inputs, "outputs": outputs}, "facts": facts}
+
+
+def _centre(picture: Picture) -> Rectangle:
+    """What the index looks at of a large picture; the rest need not be read."""
+    width, height = min(picture.width, CENTRE), min(picture.height, CENTRE)
+    return Rectangle((picture.width - width) // 2, (picture.height - height) // 2, width, height)

@@ -1,0 +1,97 @@
+"""A texture straight from files: run once for one answer, and forgotten with it."""
+
+import asyncio
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Literal
+
+from app.errors import ConflictError, InvalidInputError
+from app.experiments.following import Following
+from app.experiments.housekeeping import Housekeeping
+from app.experiments.intake import SampleIntake
+from app.experiments.model import Experiment, Sample, Status
+from app.experiments.outputs import Outputs
+from app.experiments.submission import NewExperiment, NewInput
+from app.images.convert import Format
+from app.images.crop import Rectangle
+
+
+class Direct:
+    """Runs that leave nothing behind.
+
+    Parameters
+    ----------
+    intake, housekeeping, outputs, following
+        Those of the service.
+    submit : callable
+        Accepts a transient experiment.
+    forget : callable
+        Stops a transient experiment if it still runs, and removes it.
+    """
+
+    def __init__(
+        self,
+        intake: SampleIntake,
+        housekeeping: Housekeeping,
+        outputs: Outputs,
+        following: Following,
+        submit: Callable[[NewExperiment], Experiment],
+        forget: Callable[[Experiment], None],
+    ) -> None:
+        self._intake = intake
+        self._housekeeping = housekeeping
+        self._outputs = outputs
+        self._following = following
+        self._submit = submit
+        self._forget = forget
+
+    async def synthesize(
+        self,
+        uploads: Sequence[Path],
+        *,
+        method: str,
+        crops: Sequence[Rectangle | None],
+        parameters: Mapping[str, Any],
+        file_format: Format,
+        depth: Literal[8, 16] | None,
+    ) -> tuple[bytes, str]:
+        """The picture and its media type."""
+        # It goes on to its end if the caller hangs up: only then is known what to forget.
+        begun = asyncio.ensure_future(asyncio.to_thread(self._begin, uploads, method, crops, parameters))
+        try:
+            experiment = await asyncio.shield(begun)
+            finished = await self._following.wait(experiment.id, float("inf"))
+            if finished.status is not Status.SUCCEEDED:
+                raise ConflictError(finished.error or "The run was cancelled.")
+            path, media_type = await self._outputs.converted(experiment.id, "texture", file_format, depth)
+            return await asyncio.to_thread(path.read_bytes), media_type
+        finally:
+            await asyncio.shield(self._forgotten(begun))
+
+    def _begin(
+        self, uploads: Sequence[Path], method: str, crops: Sequence[Rectangle | None], parameters: Mapping[str, Any]
+    ) -> Experiment:
+        samples: list[Sample] = []
+        try:
+            if len(crops) > len(uploads):
+                raise InvalidInputError(
+                    f"There are more crops ({len(crops)}) than pictures ({len(uploads)}).",
+                    f"inputs.{len(uploads)}.crop",
+                )
+            for upload in uploads:
+                samples.append(self._intake.add(upload, None))
+            cuts = [*crops, *[None] * (len(samples) - len(crops))]
+            inputs = tuple(NewInput(sample.id, crop) for sample, crop in zip(samples, cuts, strict=True))
+            return self._submit(NewExperiment(method, inputs, parameters, listed=False))
+        except BaseException:
+            for sample in samples:
+                self._housekeeping.remove_sample(sample.id)
+            raise
+        finally:
+            for upload in uploads:
+                upload.unlink(missing_ok=True)
+
+    async def _forgotten(self, begun: asyncio.Future[Experiment]) -> None:
+        await asyncio.wait({begun})
+        if begun.exception() is None:
+            await asyncio.to_thread(self._forget, begun.result())

@@ -1,0 +1,34 @@
+"""A database of an earlier version opens, with its experiments as they were."""
+
+from collections.abc import Callable
+from datetime import UTC, datetime
+
+import sqlalchemy as sa
+
+from app.experiments.model import Experiment, ExperimentInput, Output, Sample
+from app.images.crop import Rectangle
+from app.store.sql import SqlStore
+
+START = datetime(2026, 3, 1, 12, tzinfo=UTC)
+
+
+def test_a_database_without_the_newer_columns_gets_them(store_url: str, open_store: Callable[[], SqlStore]) -> None:
+    """Diagnostics are empty, and of the outputs the texture alone is known to be one."""
+    store = open_store()
+    store.add_sample(Sample("sample", "0" * 64, 640, 427, 3, 8, False, START))
+    inputs = (ExperimentInput("sample", Rectangle(1, 2, 30, 40)),)
+    store.add(Experiment("old", "rpn", inputs, {"seed": 1}, True, "owner", START))
+    store.start("old")
+    outputs = [Output(name, name, "image/png", 64, 32, 9, name * 8) for name in ("texture", "crop")]
+    store.succeed("old", outputs, {}, {})
+    engine = sa.create_engine(store_url)
+    with engine.begin() as connection:
+        connection.execute(sa.text("ALTER TABLE experiments DROP COLUMN diagnostics"))
+        connection.execute(sa.text("ALTER TABLE outputs DROP COLUMN kind"))
+    engine.dispose()
+
+    upgraded = open_store().get("old")
+
+    assert upgraded.diagnostics == {}
+    assert [(output.name, output.kind) for output in upgraded.outputs] == [("texture", "texture"), ("crop", "view")]
+    assert open_store().get("old") == upgraded
