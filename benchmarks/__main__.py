@@ -1,8 +1,10 @@
 """Everything that is measured: ``make bench``."""
 
-from benchmarks import kernel, service
+from benchmarks import kernel, laboratory, service
 
 if __name__ == "__main__":
     kernel.main()
+    print()
+    laboratory.main()
     print()
     service.main()

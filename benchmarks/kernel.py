@@ -70,18 +70,22 @@ def to_png(h: Real, side: int) -> bytes:
     return writer.finish()
 
 
-def all_outputs(side: int) -> None:
-    """Print how many bytes a run with every picture takes at most above the process before it."""
-    h = sample(512)
-    to_array(h, 600)  # loads what is loaded once
+def above_idle(work: Callable[[], object]) -> int:
+    """Bytes that this process takes at most for some work, above what it holds before."""
+    to_array(sample(512), 600)  # loads what is loaded once
     before = _status("VmRSS")
     with open("/proc/self/clear_refs", "w") as file:  # noqa: PTH123 - not a file but a switch: resets the peak
         file.write("5")
+    work()
+    return _status("VmHWM") - before
+
+
+def all_outputs(side: int) -> None:
+    """Run RPN with every picture."""
     rpn = method("rpn")
     context = Context(8, THREADS, lambda stage, fraction: None)
-    for _ in rpn.run([Source(h, 255)], rpn.params(width=side, height=side), context):
+    for _ in rpn.run([Source(sample(512), 255)], rpn.params(width=side, height=side), context):
         pass
-    print(_status("VmHWM") - before)
 
 
 def _status(field: str) -> int:
@@ -107,7 +111,7 @@ def main() -> None:
     parser.add_argument("--memory-of", type=int, help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.memory_of:
-        all_outputs(options.memory_of)
+        print(above_idle(partial(all_outputs, options.memory_of)))
         return
     rounds = {1024: options.rounds, 2048: max(3, options.rounds * 2 // 3), 4096: max(3, options.rounds // 2)}
     print(f"{THREADS} threads, RGB, float32; ratio: median, least–greatest over the rounds; aim; median times")
