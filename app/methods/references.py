@@ -31,7 +31,7 @@ TEXTON = Reference(
     "A Compact Representation of Random Phase and Gaussian Textures",
     "IEEE International Conference on Acoustics, Speech and Signal Processing (ICASSP)",
     2012,
-    "https://doi.org/10.1109/ICASSP.2012.6288142",
+    "https://doi.org/10.1109/ICASSP.2012.6288148",
     kind="inproceedings",
     pages="1381--1384",
 )
@@ -51,4 +51,13 @@ SHARPNESS = Reference(
     "https://doi.org/10.1109/ICASSP.2012.6288070",
     kind="inproceedings",
     pages="1065--1068",
+)
+SPOT_NOISE = Reference(
+    "J. J. van Wijk",
+    "Spot Noise: Texture Synthesis for Data Visualization",
+    "Proceedings of SIGGRAPH '91",
+    1991,
+    "https://doi.org/10.1145/127719.122751",
+    kind="inproceedings",
+    pages="309--318",
 )
