@@ -2,12 +2,16 @@
 
 from app.errors import NotFoundError
 from app.methods.adsn import ADSN
+from app.methods.dsn import DSN
 from app.methods.model import Method
 from app.methods.rpn import RPN
+from app.methods.texton import TEXTON
 
 METHODS: dict[str, Method] = {
     "rpn": RPN,
     "adsn": ADSN,
+    "dsn": DSN,
+    "texton": TEXTON,
 }
 
 

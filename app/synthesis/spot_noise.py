@@ -1,0 +1,96 @@
+"""Spot noise: a spot convolved, on the torus, with a white noise that all channels share.
+
+    Z = m + (h̃ − m̃) ∗ W,   Ẑ(k) = ĥ(k) Ŵ(k) for k ≠ 0,   E|Ŵ(k)|² = 1,
+
+so that the covariance of Z is the autocorrelation of the spot. W is a Gaussian white noise for the asymptotic
+discrete spot noise, a normalised count of random points for the discrete one. The coefficient at the origin is the
+spot's mean alone.
+
+References
+----------
+Galerne, Gousseau, Morel, "Random Phase Textures: Theory and Synthesis", IEEE TIP 2011: section 2.
+"""
+
+import numpy as np
+import scipy.fft
+from numpy.typing import NDArray
+
+from app.synthesis.field import Progress
+from app.synthesis.periodic import periodic_planes
+from app.synthesis.spectral import random_spectrum
+from app.synthesis.spot import Profile, Spot, centre, make_spot
+
+Complex = NDArray[np.complex64]
+Real = NDArray[np.float32]
+
+
+def sample_spot(
+    h: Real, height: int, width: int, alpha: float = 0.1, window: Profile = "bump", threads: int = 1
+) -> Spot:
+    """The spot that RPN and ADSN use: the periodic component of a sample, extended to the texture's size.
+
+    Parameters
+    ----------
+    h : ndarray of float32, shape (H, W, C)
+        Along an axis that is longer than the texture's, its centre is taken.
+    height, width : int
+        Size of the texture.
+    alpha, window
+        See `app.synthesis.spot.window`.
+    threads : int
+
+    Returns
+    -------
+    Spot
+    """
+    p = periodic_planes(centre(h, height, width), threads)
+    return make_spot(p, p.mean(axis=(1, 2), dtype=np.float64), height, width, alpha, window)
+
+
+def transform(plane: Real, spot: Spot, threads: int = 1) -> Complex:
+    """Half spectrum, shape (height, width // 2 + 1), of a plane on the spot's rectangle with zeros around it."""
+    if plane.shape != (spot.height, spot.width):
+        whole = np.zeros((spot.height, spot.width), np.float32)
+        whole[spot.top : spot.top + plane.shape[0], spot.left : spot.left + plane.shape[1]] = plane
+        plane = whole
+    spectrum: Complex = scipy.fft.rfft2(plane, workers=threads)
+    return spectrum
+
+
+def convolve(spot: Spot, noise: Complex, threads: int = 1, progress: Progress | None = None) -> Real:
+    """Spot noise of a given white noise.
+
+    Parameters
+    ----------
+    spot : Spot
+    noise : ndarray of complex64, shape (spot.height, spot.width // 2 + 1)
+        Ŵ on the half spectrum; what it says at the origin is not looked at.
+    threads : int
+        For the transforms; the result does not depend on it.
+    progress : callable ``(stage, part)``, optional
+        Called between channels; what it raises stops the work.
+
+    Returns
+    -------
+    ndarray of float32, shape (height, width, C)
+    """
+    texture = np.empty((len(spot.planes), spot.height, spot.width), np.float32)
+    for channel, (plane, mean) in enumerate(zip(spot.planes, spot.mean, strict=True)):
+        if progress:
+            progress("texture", channel / len(texture))
+        spectrum = transform(plane, spot, threads)
+        spectrum *= noise
+        spectrum[0, 0] = 0
+        made = scipy.fft.irfft2(spectrum, s=texture.shape[1:], overwrite_x=True, workers=threads)
+        np.add(made, np.float32(mean), out=texture[channel])
+    if progress:
+        progress("texture", 1.0)
+    return texture.transpose(1, 2, 0)
+
+
+def asymptotic(spot: Spot, seed: int, threads: int = 1, progress: Progress | None = None) -> Real:
+    """Asymptotic discrete spot noise of a spot, with the phase and modulus that `app.synthesis.adsn` has at this seed.
+
+    Parameters and result are those of `convolve`; the white noise is that of `random_spectrum`.
+    """
+    return convolve(spot, random_spectrum(spot.height, spot.width, seed, rayleigh=True), threads, progress)
