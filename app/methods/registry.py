@@ -4,6 +4,7 @@ from app.errors import NotFoundError
 from app.methods.adsn import ADSN
 from app.methods.dsn import DSN
 from app.methods.model import Method
+from app.methods.rayleigh import RAYLEIGH
 from app.methods.rpn import RPN
 from app.methods.texton import TEXTON
 
@@ -12,6 +13,7 @@ METHODS: dict[str, Method] = {
     "adsn": ADSN,
     "dsn": DSN,
     "texton": TEXTON,
+    "rayleigh": RAYLEIGH,
 }
 
 

@@ -1,0 +1,147 @@
+"""`rayleigh`: the modulus made noisy, the phase kept."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import scipy.fft
+
+from app.errors import InvalidInputError
+from app.methods.explanation import Exhibit, Explanation, Figure, Formula
+from app.methods.model import Context, Fact, Method, Picture, Progress, Size, Source, StillParams
+from app.methods.pictures import Real, crops, encode, log_modulus, refuse_infinite
+from app.methods.random_phase import INPUTS
+from app.methods.references import PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
+from app.synthesis.field import Noise, synthesize
+from app.synthesis.periodic import periodic_component
+from app.synthesis.rayleigh import rayleigh
+from app.synthesis.spot import centre
+
+
+def check(sizes: Sequence[Size], params: StillParams) -> None:
+    """Refuse a size beyond the crop's."""
+    for name, asked, most in (("width", params.width, sizes[0].width), ("height", params.height, sizes[0].height)):
+        if asked and asked > most:
+            raise InvalidInputError(
+                f"The phase of the crop is kept, so the {name} can be at most the crop's own, {most} pixels, and "
+                f"{asked} is asked for: take a larger crop, or a smaller {name}.",
+                f"parameters.{name}",
+            )
+
+
+def run(sources: Sequence[Source], params: StillParams, context: Context) -> Iterator[Picture]:
+    """The crop under the noise; then its random phase noise, without and with the same noise."""
+    source = sources[0]
+    check([Size(source.pixels.shape[1], source.pixels.shape[0], source.pixels.shape[2])], params)
+    refuse_infinite(sources)
+    h, peak = source.pixels, source.peak
+    height, width = params.height or h.shape[0], params.width or h.shape[1]
+
+    progress = context.between(0, 0.25)
+    z = rayleigh(h, height, width, seed=params.seed, threads=context.threads, progress=progress)
+    p = periodic_component(centre(h, height, width), context.threads)
+    fact = Fact("correlation", "Correlation with the periodic component", _correlation(p, z))
+    yield encode("texture", "Rayleigh noise on the modulus", z, peak, context, kind="texture", facts=(fact,))
+    context.progress("periodic", 0.3)
+    yield from crops(sources, context)
+    yield encode("periodic", "Periodic component", p, peak, context)
+    for name, title, begin in (("rpn", "RPN of the crop", 0.35), ("adsn", "The same with Rayleigh noise: ADSN", 0.6)):
+        noise = Noise(height, width, seed=params.seed, rayleigh=name == "adsn")
+        progress = _as_one_stage(name, context.between(begin, begin + 0.25))
+        texture = synthesize(h, noise, context.threads, progress)
+        yield encode(name, title, texture, peak, context, kind="texture")
+    for name, title, image, done in (
+        ("input-spectrum", "Log-modulus of the periodic component", p, 0.9),
+        ("output-spectrum", "Log-modulus with Rayleigh noise", z, 0.95),
+    ):
+        context.progress(name, done)
+        yield log_modulus(name, title, _power(image, context.threads), width, context)
+    context.progress("output-spectrum", 1.0)
+
+
+def _as_one_stage(name: str, progress: Progress) -> Progress:
+    """The stages of `synthesize` as one."""
+    stages = ("spot", "random phase", "texture")
+    return lambda stage, part: progress(name, (stages.index(stage) + part) / len(stages))
+
+
+def _correlation(p: Real, z: Real) -> float:
+    """Over all pixels and channels, each channel about its own mean; 1 for an image without contrast."""
+    p, z = p - p.mean((0, 1)), z - z.mean((0, 1))
+    scale = float(np.sqrt(np.square(p).mean(dtype=np.float64) * np.square(z).mean(dtype=np.float64)))
+    return float(np.multiply(p, z).mean(dtype=np.float64)) / scale if scale else 1.0
+
+
+def _power(image: Real, threads: int) -> Real:
+    """Squared modulus on the half spectrum, the mean over the channels."""
+    planes = np.moveaxis(image - image.mean((0, 1)), 2, 0)
+    power: Real = np.square(np.abs(scipy.fft.rfft2(planes, workers=threads))).mean(axis=0)
+    return power
+
+
+EXPLANATION = Explanation(
+    what=(
+        "Random phase noise and asymptotic discrete spot noise have the same phase and differ by a white Rayleigh "
+        "noise on the modulus, and yet one takes them for each other. Is the eye blind to this noise? Here it is put "
+        "on the photograph itself: its phase is kept, its modulus multiplied by independent Rayleigh numbers.",
+        "A photograph with contours does not bear it: a woven haze spreads over all that was smooth, and contours fade "
+        "in it. A random phase texture looks the same before and after. That only such textures bear it may be what "
+        "characterises them. Below the crop, its random phase noise (RPN) undergoes the very same multiplication, "
+        "which makes it an ADSN.",
+        "The noise is put on the periodic component of the crop, as in all the experiments of the article, so that "
+        "the jump between opposite borders does not spread as streaks. Measured pixel by pixel both suffer alike: the "
+        r"correlation with what was before is about $\sqrt{\pi}/2 \approx 0.89$ whatever the image.",
+    ),
+    formulas=(
+        Formula(
+            r"\hat{z}(\xi) = R(\xi)\, \hat{p}(\xi), \qquad R(-\xi) = R(\xi), \quad R(0) = 1",
+            r"$p$ is the periodic component of the crop and $R$ a white Rayleigh noise, the same for every channel; "
+            r"the phase of $\hat{p}$ and the mean stay.",
+        ),
+        Formula(
+            r"\mathbb{P}(R > r) = e^{-r^2}, \qquad \mathbb{E}(R^2) = 1, \qquad \mathbb{E}(R) = \frac{\sqrt{\pi}}{2}",
+            r"It keeps the energy of every frequency on the average, and is the modulus noise of the ADSN of the same "
+            r"seed.",
+        ),
+    ),
+    fails=(
+        "It makes no new texture: the phase, and with it the place of everything, is the crop's. It is an experiment "
+        "on what one sees; for a texture take RPN or ADSN.",
+        "A structure that fills the crop evenly, such as gravel of one size, is nearly a random phase texture and "
+        "bears the noise nearly as well: look for contours and for surfaces without grain. And where a few frequencies "
+        "hold most of the energy, as in a row of tiles, even a random phase texture shows which of them the noise "
+        "favours.",
+    ),
+    figures=(
+        Figure(
+            "A scene does not bear it",
+            "A whole photograph, and the same under Rayleigh noise: a haze lies over sky and lake.",
+            (Exhibit("rayleigh", (("scene_china", "0,0,640,427"),), {"seed": 1}),),
+        ),
+        Figure(
+            "What has contours is damaged, its random phase texture is not",
+            "Crazy paving under the noise; and its random phase noise, before and after the same multiplication.",
+            (
+                Exhibit(
+                    "rayleigh", (("crazy_paving001", "80,80,256,256"),), {"seed": 1}, ("crop", "texture", "rpn", "adsn")
+                ),
+            ),
+        ),
+        Figure(
+            "A micro-texture bears it",
+            "Granite is nearly a random phase texture already: with and without the noise it is the same stone.",
+            (Exhibit("rayleigh", (("rockface_pink", "190,60,256,256"),), {"seed": 1}),),
+        ),
+    ),
+)
+
+RAYLEIGH = Method(
+    name="rayleigh",
+    title="Rayleigh noise on the modulus",
+    summary="Keeps the phase of the crop and multiplies its Fourier modulus by Rayleigh noise.",
+    inputs=INPUTS,
+    params=StillParams,
+    references=(RANDOM_PHASE_TEXTURES, PERIODIC_PLUS_SMOOTH),
+    explanation=EXPLANATION,
+    check=check,
+    run=run,
+)
