@@ -1,8 +1,8 @@
-"""Receives a form with one file, the file straight to disk under the data directory."""
+"""Receives a form with files, the files straight to disk under the data directory."""
 
 import tempfile
 import time
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -21,7 +21,7 @@ from app.web.limits import size
 if TYPE_CHECKING:
     from python_multipart.multipart import MultipartCallbacks
 
-MAX_FIELDS = 64
+MAX_FIELDS = 256
 MAX_FIELD_BYTES = 16 * 1024
 INCOMING, PREFIX = "incoming", "upload-"
 ABANDONED_SECONDS = 3600.0  # without a write: longer than any upload that still goes on, here or in another web process
@@ -29,21 +29,32 @@ ABANDONED_SECONDS = 3600.0  # without a write: longer than any upload that still
 
 @dataclass
 class Form:
-    """A received form: text fields by name (the last of several wins), and the file, gone when the route returns."""
+    """A received form: text fields by name (the last of several wins), and files by name, gone when the route returns.
+
+    A field in which no file was chosen is not among the files.
+    """
 
     fields: dict[str, str] = field(default_factory=dict)
-    file: Path | None = None
-    filename: str | None = None
+    files: dict[str, Path] = field(default_factory=dict)
+
+    @property
+    def file(self) -> Path | None:
+        """The file of the field ``file``."""
+        return self.files.get("file")
 
 
 class _Parts:
-    """What the parser calls: keeps fields, collects the file's bytes in ``pending`` until they are written."""
+    """What the parser calls: keeps fields, and collects the files' bytes in ``pending`` until they are written.
 
-    def __init__(self) -> None:
+    ``pending`` are pairs of a field's name and bytes, in the order in which they came.
+    """
+
+    def __init__(self, names: Sequence[str]) -> None:
         self.fields: dict[str, str] = {}
-        self.filename: str | None = None
-        self.pending: list[bytes] = []
+        self.filenames: dict[str, str] = {}
+        self.pending: list[tuple[str, bytes]] = []
         self.complete = False
+        self._names = names
         self._disposition = b""
         self._header = bytearray()
         self._value = bytearray()
@@ -88,13 +99,14 @@ class _Parts:
             self._text = bytearray()
             return
         self._text = None
-        if self._name != "file" or self.filename is not None:
-            raise HTTPException(400, "The form has one file, in the field 'file'.")
-        self.filename = _decoded(options[b"filename"])
+        if self._name not in self._names or self._name in self.filenames:
+            wanted = ", ".join(f"'{name}'" for name in self._names)
+            raise HTTPException(400, f"The form has one file a field, in: {wanted}.")
+        self.filenames[self._name] = _decoded(options[b"filename"])
 
     def on_part_data(self, data: bytes, start: int, end: int) -> None:
         if self._text is None:
-            self.pending.append(data[start:end])
+            self.pending.append((self._name, data[start:end]))
         elif len(self._text) + end - start > MAX_FIELD_BYTES:
             raise HTTPException(400, f"The form's field {self._name!r} is longer than {size(MAX_FIELD_BYTES)}.")
         else:
@@ -107,59 +119,67 @@ class _Parts:
     def on_end(self) -> None:
         self.complete = True
 
-    def taken(self) -> bytes:
-        data = b"".join(self.pending)
-        self.pending.clear()
-        return data
+    def taken(self) -> list[tuple[str, bytes]]:
+        taken, self.pending = self.pending, []
+        return taken
 
 
 @asynccontextmanager
-async def receive_form(request: Request) -> AsyncIterator[Form]:
-    """Receive a ``multipart/form-data`` body with at most one file, in the field ``file``.
+async def receive_form(request: Request, names: Sequence[str] = ("file",)) -> AsyncIterator[Form]:
+    """Receive a ``multipart/form-data`` body with at most one file in each field of ``names``.
 
     Raises
     ------
     TooLargeError
-        If the file has more bytes than the settings allow; it is then not on the disk any more.
+        If the files together have more bytes than the settings allow; they are then not on the disk any more.
     HTTPException
         400 for a malformed form, 415 for a body of another kind.
     """
     kind, options = parse_options_header(request.headers.get("content-type"))
     if kind != b"multipart/form-data":
-        raise HTTPException(415, "Send the file as multipart/form-data, in the field 'file'.")
+        raise HTTPException(415, f"Send the file as multipart/form-data, in the field '{names[0]}'.")
     if not options.get(b"boundary"):
         raise HTTPException(400, "The Content-Type of the form names no boundary.")
-    target = await anyio.to_thread.run_sync(_open, get_settings(request).data_dir / INCOMING)
-    path = Path(target.name)
+    directory = get_settings(request).data_dir / INCOMING
+    targets: dict[str, BinaryIO] = {}
     try:
-        yield await _read(request, options[b"boundary"], target)
+        yield await _read(request, options[b"boundary"], _Parts(names), directory, targets)
     finally:
-        target.close()
-        path.unlink(missing_ok=True)
+        for target in targets.values():
+            target.close()
+            Path(target.name).unlink(missing_ok=True)
 
 
-async def _read(request: Request, boundary: bytes, target: BinaryIO) -> Form:
-    parts = _Parts()
+async def _read(
+    request: Request, boundary: bytes, parts: _Parts, directory: Path, targets: dict[str, BinaryIO]
+) -> Form:
+    """Write what arrives into files, added to ``targets`` as they are opened."""
     limit, written = get_settings(request).max_upload_bytes, 0
     try:
         parser = MultipartParser(boundary, parts.callbacks())
         async for chunk in request.stream():
             parser.write(chunk)
-            if data := parts.taken():
+            for name, data in parts.taken():
                 written += len(data)
-                if (
-                    written <= limit
-                ):  # what is more is read to its end, so that the client sees the answer, but not kept
-                    await anyio.to_thread.run_sync(target.write, data)
+                # What is more is read to its end, so that the client sees the answer, but not kept.
+                if written <= limit:
+                    if name not in targets:
+                        targets[name] = await anyio.to_thread.run_sync(_open, directory)
+                    await anyio.to_thread.run_sync(targets[name].write, data)
     except FormParserError:
         raise HTTPException(400, "The form is malformed: it does not follow multipart/form-data.") from None
     if written > limit:
-        raise TooLargeError(f"The file is larger than {size(limit)}: send a smaller one.")
+        several = len(parts.filenames) > 1
+        what, advice = ("files together are", "smaller ones") if several else ("file is", "a smaller one")
+        raise TooLargeError(f"The {what} larger than {size(limit)}: send {advice}.")
     if not parts.complete:
         raise HTTPException(400, "The form ends in the middle: send it again.")
-    await anyio.to_thread.run_sync(target.flush)
-    has_file = bool(parts.filename) or written > 0  # a browser sends an empty part when no file was chosen
-    return Form(parts.fields, Path(target.name) if has_file else None, parts.filename or None)
+    for name, given in parts.filenames.items():
+        if given and name not in targets:  # an empty file; a browser's part without a name means that none was chosen
+            targets[name] = await anyio.to_thread.run_sync(_open, directory)
+    for target in targets.values():
+        await anyio.to_thread.run_sync(target.flush)
+    return Form(parts.fields, {name: Path(target.name) for name, target in targets.items()})
 
 
 def remove_abandoned(data_dir: Path) -> None:

@@ -1,6 +1,7 @@
-"""``POST /api/v1/synthesize``: a photograph in, its texture out, nothing kept."""
+"""``POST /api/v1/synthesize``: photographs in, their texture out, nothing kept."""
 
 import asyncio
+from itertools import pairwise
 from typing import Any, Literal, cast
 
 from fastapi import APIRouter, Request
@@ -22,21 +23,37 @@ Format = Literal["png", "jpeg", "webp", "tiff"]
 FORMATS: dict[str, Format] = {"image/png": "png", "image/jpeg": "jpeg", "image/webp": "webp", "image/tiff": "tiff"}
 _DEPTHS: dict[str, Literal[8, 16]] = {"8": 8, "16": 16}
 
+FILES = ("file", "file-2", "file-3", "file-4")
+CROPS = ("crop", "crop-2", "crop-3", "crop-4")
+
+
+def _numbered(number: int, what: str) -> str:
+    return what if number == 1 else f"The same of input {number}, for methods that take several."
+
+
 _FORM: dict[str, Any] = {
     "type": "object",
     "required": ["file", "method"],
     "properties": {
-        "file": {
-            "type": "string",
-            "contentMediaType": "application/octet-stream",
-            "description": "PNG, JPEG, WebP or TIFF, 8 or 16 bits, grey or colour.",
-        },
         "method": {"type": "string", "enum": list(METHODS), "description": "Name of a method."},
-        "crop": {
-            "type": "string",
-            "pattern": r"^\d{1,6},\d{1,6},\d{1,6},\d{1,6}$",
-            "description": "`x,y,width,height` in pixels of the upright picture; default: all of it.",
-            "examples": ["0,0,256,256"],
+        **{
+            name: {
+                "type": "string",
+                "contentMediaType": "application/octet-stream",
+                "description": _numbered(number, "PNG, JPEG, WebP or TIFF, 8 or 16 bits, grey or colour."),
+            }
+            for number, name in enumerate(FILES, 1)
+        },
+        **{
+            name: {
+                "type": "string",
+                "pattern": r"^\d{1,6},\d{1,6},\d{1,6},\d{1,6}$",
+                "description": _numbered(
+                    number, "`x,y,width,height` in pixels of the upright picture; default: all of it."
+                ),
+                "examples": ["0,0,256,256"],
+            }
+            for number, name in enumerate(CROPS, 1)
         },
         "format": {
             "type": "string",
@@ -51,7 +68,7 @@ _FORM: dict[str, Any] = {
 
 @router.post(
     "/synthesize",
-    summary="A texture straight from a photograph",
+    summary="A texture straight from photographs",
     response_class=Response,
     responses={
         200: {
@@ -64,7 +81,7 @@ _FORM: dict[str, Any] = {
 )
 async def synthesize(request: Request, service: ServiceDep) -> Response:
     """Every parameter of the method is a field of the form. Nothing of it is kept; hanging up cancels it."""
-    async with receive_form(request) as form:
+    async with receive_form(request, FILES) as form:
         wanted = _wanted(request, form)
         running = asyncio.ensure_future(service.synthesize(**wanted))
         hung_up = asyncio.ensure_future(_hung_up(request))
@@ -89,12 +106,17 @@ def _wanted(request: Request, form: Form) -> dict[str, Any]:
     fields = {name: value.strip() for name, value in form.fields.items() if value.strip()}
     if form.file is None:
         raise InvalidInputError("Send a picture in the form's field 'file'.", "file")
+    for missing, given in pairwise(FILES):
+        if given in form.files and missing not in form.files:
+            raise InvalidInputError(f"The form has a file in '{given}' and none in '{missing}'.", missing)
     method = fields.pop("method", "")
     if method not in METHODS:
         raise InvalidInputError(
             f"Name a method in the field 'method'. The methods are: {', '.join(METHODS)}.", "method"
         )
-    crop = fields.pop("crop", None)
+    crops = [_crop(name, fields.pop(name, None)) for name in CROPS]
+    while crops and crops[-1] is None:
+        crops.pop()
     file_format = fields.pop("format", None)
     if file_format is not None and file_format not in FORMATS.values():
         raise InvalidInputError(f"The format is one of: {', '.join(FORMATS.values())}.", "format")
@@ -102,9 +124,9 @@ def _wanted(request: Request, form: Form) -> dict[str, Any]:
     if depth is not None and depth not in _DEPTHS:
         raise InvalidInputError("The depth is 8 or 16 bits per channel.", "depth")
     return {
-        "uploads": [form.file],
+        "uploads": [form.files[name] for name in FILES if name in form.files],
         "method": method,
-        "crops": [None if crop is None else Rectangle.parse(crop)],
+        "crops": crops,
         "parameters": fields,
         "file_format": file_format or preferred_format(request.headers.get("accept", "")),
         "depth": None if depth is None else _DEPTHS[depth],
@@ -132,9 +154,26 @@ def preferred_format(accept: str) -> Format:
     return "png" if best <= 0 or likings.get("png") == best else next(name for name in likings if likings[name] == best)
 
 
+def _crop(name: str, text: str | None) -> Rectangle | None:
+    try:
+        return None if text is None else Rectangle.parse(text)
+    except InvalidInputError as error:
+        raise InvalidInputError(error.message, name) from None
+
+
 def _form_field(field: str | None) -> str | None:
-    """Name the form's field that a field of the JSON body is here."""
-    return field and field.removeprefix("parameters.").removeprefix("inputs.0.")
+    """Name the form's field that a field of the JSON body is here.
+
+    Examples
+    --------
+    >>> [_form_field(field) for field in ("parameters.alpha", "inputs.0.crop", "inputs.2.crop", "inputs.1", "inputs")]
+    ['alpha', 'crop', 'crop-3', 'file-2', 'file']
+    """
+    if field is None or not field.startswith("inputs"):
+        return field and field.removeprefix("parameters.")
+    _, index, part, *_ = [*field.split("."), "0", ""]
+    names = CROPS if part == "crop" else FILES
+    return names[int(index)] if int(index) < len(names) else "method"
 
 
 async def _hung_up(request: Request) -> None:
