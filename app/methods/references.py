@@ -61,3 +61,29 @@ SPOT_NOISE = Reference(
     kind="inproceedings",
     pages="309--318",
 )
+HEEGER_BERGEN = Reference(
+    "D. J. Heeger, J. R. Bergen",
+    "Pyramid-Based Texture Analysis/Synthesis",
+    "Proceedings of the 22nd Annual Conference on Computer Graphics and Interactive Techniques (SIGGRAPH)",
+    1995,
+    "https://doi.org/10.1145/218380.218446",
+    kind="inproceedings",
+    pages="229--238",
+)
+IPOL_HEEGER_BERGEN = Reference(
+    "T. Briand, J. Vacher, B. Galerne, J. Rabin",
+    "The Heeger-Bergen Pyramid-Based Texture Synthesis Algorithm",
+    "Image Processing On Line 4",
+    2014,
+    "https://doi.org/10.5201/ipol.2014.79",
+    pages="276--299",
+)
+STEERABLE_PYRAMID = Reference(
+    "E. P. Simoncelli, W. T. Freeman",
+    "The Steerable Pyramid: A Flexible Architecture for Multi-Scale Derivative Computation",
+    "IEEE International Conference on Image Processing (ICIP)",
+    1995,
+    "https://doi.org/10.1109/ICIP.1995.537667",
+    kind="inproceedings",
+    pages="444--447",
+)

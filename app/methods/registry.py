@@ -3,6 +3,7 @@
 from app.errors import NotFoundError
 from app.methods.adsn import ADSN
 from app.methods.dsn import DSN
+from app.methods.heeger_bergen import HEEGER_BERGEN
 from app.methods.model import Method
 from app.methods.rayleigh import RAYLEIGH
 from app.methods.rpn import RPN
@@ -14,6 +15,7 @@ METHODS: dict[str, Method] = {
     "dsn": DSN,
     "texton": TEXTON,
     "rayleigh": RAYLEIGH,
+    "heeger-bergen": HEEGER_BERGEN,
 }
 
 

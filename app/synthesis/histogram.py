@@ -1,0 +1,83 @@
+"""Histogram matching: give an image's values the distribution of others, and keep their order.
+
+Exact: the value of rank j among n becomes the quantile (j + ½) / n of the target, whose quantiles between its sorted
+values are interpolated where the sizes differ.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+Real = NDArray[np.float32]
+
+CHUNK = 1 << 15  # values worked on at a time, so that what is between them stays in the cache
+
+
+def quantiles(ordered: Real, count: int, first: int = 0, last: int | None = None) -> Real:
+    """Quantiles (j + ½) / count, j = first … last − 1, of sorted values that stand for (i + ½) / n.
+
+    Parameters
+    ----------
+    ordered : ndarray of float32, shape (n,)
+        Ascending.
+    count : int
+        Of quantiles in all.
+    first, last : int
+        Those asked for; all by default.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> quantiles(np.array([0, 4, 8], np.float32), 6)
+    array([0., 1., 3., 5., 7., 8.], dtype=float32)
+    """
+    last = count if last is None else last
+    if len(ordered) == count:
+        return ordered[first:last]
+    place = (np.arange(first, last) + 0.5) * (len(ordered) / count) - 0.5
+    np.clip(place, 0, len(ordered) - 1, out=place)
+    below = place.astype(np.intp)
+    low, high = ordered[below], ordered[np.minimum(below + 1, len(ordered) - 1)]
+    part = (place - below).astype(np.float32)
+    result: Real = low + part * (high - low)
+    return result
+
+
+def match(values: Real, ordered: Real, alive: Callable[[], None] = lambda: None) -> None:
+    """Give values, in place, the distribution of a target; equal values are told apart by their place.
+
+    Floats become whole numbers that sort alike, with their places in the lower half: sorting these whole numbers
+    is several times as fast as `numpy.argsort` of floats.
+
+    Parameters
+    ----------
+    values : ndarray of float32, contiguous
+        Fewer than 2³² of them.
+    ordered : ndarray of float32, shape (n,)
+        The target's values, ascending.
+    alive : callable
+        Called between pieces of work; what it raises stops the work.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> values = np.array([[30, 10], [40, 20]], np.float32)
+    >>> match(values, np.array([-2, 0, 0.5, 9], np.float32))
+    >>> values
+    array([[ 0.5, -2. ],
+           [ 9. ,  0. ]], dtype=float32)
+    """
+    flat = values.reshape(-1)
+    bits, keys = flat.view(np.int32), np.empty(flat.size, np.int64)
+    for first in range(0, flat.size, CHUNK):
+        piece, key = bits[first : first + CHUNK], keys[first : first + CHUNK]
+        key[:] = piece ^ ((piece >> 31) & 0x7FFFFFFF)  # the magnitude of negative floats counts downwards
+        key <<= 32
+        key |= np.arange(first, first + len(piece))
+    alive()
+    keys.sort()
+    for first in range(0, flat.size, CHUNK):
+        alive()
+        place = keys[first : first + CHUNK] & 0xFFFFFFFF
+        flat[place] = quantiles(ordered, flat.size, first, first + len(place))
