@@ -48,8 +48,11 @@ class Noise:
         Width of the spot's transition, 0–0.5 of the sample.
     window : {"bump", "gaussian"}
         Its profile.
+    periodic : bool
+        Take the sample's periodic component; without, the sample itself, whose jumps between opposite borders become
+        streaks.
     add_smooth : bool
-        Add the smooth component to the texture; same size only.
+        Add the smooth component to the texture; same size and with ``periodic`` only.
     """
 
     height: int
@@ -59,6 +62,7 @@ class Noise:
     phase: Literal["add", "replace"] = "add"
     alpha: float = 0.1
     window: Profile = "bump"
+    periodic: bool = True
     add_smooth: bool = False
 
 
@@ -82,10 +86,13 @@ class Field:
     Raises
     ------
     ValueError
-        If the sample holds values that are not finite, or ``add_smooth`` is asked for at another size.
+        If the sample holds values that are not finite, or ``add_smooth`` is asked for at another size or without
+        ``periodic``.
     """
 
     def __init__(self, h: Real, noise: Noise, team: Team, progress: Progress) -> None:
+        if noise.add_smooth and not noise.periodic:
+            raise ValueError("The smooth component can be added only where it was taken out before.")
         self.noise = noise
         self._team = team
         self._progress = progress
@@ -95,7 +102,8 @@ class Field:
         self._top = (noise.height - height) // 2
         self._smooth: SmoothSpectrum | None = None
         if (height, width) == (noise.height, noise.width):
-            self._smooth = SmoothSpectrum(h)
+            if noise.periodic:
+                self._smooth = SmoothSpectrum(h)
             # What is taken off first need only be near the mean: the rest of the mean is read off the transforms.
             near = h[::8, ::8].mean(axis=(0, 1), dtype=np.float64).astype(np.float32)
             self._spectrum = self._transform_rows(h.transpose(2, 0, 1), near)
@@ -103,7 +111,7 @@ class Field:
         elif noise.add_smooth:
             raise ValueError("The smooth component can be added only to a texture of the sample's own size.")
         else:
-            p = periodic_planes(h, team.threads)
+            p = periodic_planes(h, team.threads) if noise.periodic else h.transpose(2, 0, 1).copy()
             self.mean = p.mean(axis=(1, 2), dtype=np.float64)
             spot = make_spot(p, self.mean, noise.height, noise.width, noise.alpha, noise.window)
             self._spectrum = self._transform_rows(spot.planes, np.zeros(channels, np.float32))
@@ -126,10 +134,16 @@ class Field:
         self._team.run(transform, row_blocks(high), lambda part: self._progress("spot", part))
         return spectrum
 
-    def _spectra(self, block: tuple[int, int]) -> Iterator[Complex]:
-        """One block of columns of the noise's spectrum, channel by channel, without the mean."""
+    def random(self, block: tuple[int, int]) -> Complex:
+        """One block of columns of the random spectrum."""
+        return random_block(self.noise.height, self.noise.width, block, self.noise.seed, self.noise.rayleigh)
+
+    def spectra(self, block: tuple[int, int], random: Complex) -> Iterator[Complex]:
+        """One block of columns of the noise's spectrum, channel by channel, without the mean.
+
+        ``random`` is that block of the random spectrum. Not after `randomise`.
+        """
         noise, (first, last) = self.noise, block
-        random = random_block(noise.height, noise.width, block, noise.seed, noise.rayleigh)
         smooths = self._smooth.block(first, last) if self._smooth else None
         for rows in self._spectrum[:, :, first:last]:
             spectrum: Complex
@@ -151,15 +165,19 @@ class Field:
                 spectrum += smooth
             yield spectrum
 
+    def room(self) -> Complex:
+        """Where columns that are done can go, (C, height, width // 2 + 1): the field's own array, if it is so large."""
+        if self._spectrum.shape[1] == self.noise.height:
+            return self._spectrum
+        return np.empty((len(self.mean), self.noise.height, self.noise.width // 2 + 1), np.complex64)
+
     def randomise(self) -> "Field":
         """Do the columns; needed once before `emit`."""
-        noise, done = self.noise, self._spectrum
-        if done.shape[1] < noise.height:
-            done = np.empty((len(self.mean), noise.height, noise.width // 2 + 1), np.complex64)
+        noise, done = self.noise, self.room()
 
         def transform(block: tuple[int, int]) -> None:
             columns = slice(*block)
-            for plane, spectrum in zip(done, self._spectra(block), strict=True):
+            for plane, spectrum in zip(done, self.spectra(block, self.random(block)), strict=True):
                 plane[:, columns] = scipy.fft.ifft(spectrum, axis=0, overwrite_x=True, workers=1)
 
         self._team.run(transform, column_blocks(noise.width), lambda part: self._progress("random phase", part))
@@ -178,7 +196,7 @@ class Field:
 
         def measure(block: tuple[int, int]) -> None:
             columns = power[:, slice(*block)]
-            for spectrum in self._spectra(block):
+            for spectrum in self.spectra(block, self.random(block)):
                 columns += spectrum.real**2 + spectrum.imag**2
             columns /= len(self.mean)
 
@@ -221,11 +239,16 @@ def synthesize(h: Real, noise: Noise, threads: int = 1, progress: Progress | Non
     if h.ndim == 2:
         return synthesize(h[:, :, None], noise, threads, progress)[:, :, 0]
     texture = np.empty((noise.height, noise.width, h.shape[2]), np.float32)
+    with Team(threads) as team:
+        Field(h, noise, team, progress or (lambda stage, part: None)).randomise().emit(into(texture))
+    return texture
+
+
+def into(texture: Real) -> Sink:
+    """A sink that puts all it is handed into an array (height, width, C)."""
 
     def store(first: int, planes: Iterable[Real]) -> None:
         for channel, plane in enumerate(planes):
             texture[first : first + len(plane), :, channel] = plane
 
-    with Team(threads) as team:
-        Field(h, noise, team, progress or (lambda stage, part: None)).randomise().emit(store)
-    return texture
+    return store
