@@ -1,5 +1,6 @@
 """The pages' template environment, and what every template is given."""
 
+import re
 from collections.abc import Mapping
 from math import sqrt
 from pathlib import Path
@@ -12,6 +13,7 @@ from starlette.responses import Response
 from app.experiments.meter import MICRO, STRUCTURED, reading
 from app.methods.registry import METHODS
 from app.settings import ROOT
+from app.web.prose import mathml, prose
 
 TEMPLATES = Jinja2Templates(directory=Path(ROOT) / "templates")
 METER_END = 0.4  # the index at which the bar is full; bricks lie at 0.3
@@ -20,14 +22,18 @@ TEMPLATES.env.lstrip_blocks = True
 
 
 def label(method: str) -> str:
-    """Name a method as people do: in capitals if its title says so, as in "Random phase noise (RPN)".
+    """Name a method briefly, as people do: by its title's initials, by its title if that is short, or by its name.
 
     Examples
     --------
-    >>> label("rpn")
-    'RPN'
+    >>> label("rpn"), label("rayleigh"), label("heeger-bergen")
+    ('RPN', 'Rayleigh', 'Heeger–Bergen')
     """
-    return method.upper() if method.upper() in METHODS[method].title else method.replace("-", " ").capitalize()
+    title, _, _ = METHODS[method].title.partition(" (")
+    words = re.split(r"\W+", title.lower())
+    if f"({method.upper()})" in METHODS[method].title:
+        return method.upper()
+    return title if len(words) <= 3 and set(method.split("-")) <= set(words) else method.replace("-", " ").capitalize()
 
 
 def meter_place(delta: float) -> float:
@@ -41,7 +47,7 @@ def meter_place(delta: float) -> float:
     return round(min(100.0, 100 * sqrt(max(delta, 0.0) / METER_END)), 1)
 
 
-TEMPLATES.env.filters.update(label=label, reading=reading, meter_place=meter_place)
+TEMPLATES.env.filters.update(label=label, reading=reading, meter_place=meter_place, mathml=mathml, prose=prose)
 TEMPLATES.env.globals["meter_limits"] = (MICRO, STRUCTURED)
 
 
