@@ -7,6 +7,8 @@ from typing import TypeVar
 
 T = TypeVar("T")
 
+PATIENCE = 0.2  # seconds between calls of ``done`` while a long task runs
+
 
 class Team:
     """A pool of ``threads`` threads, to be used in a ``with`` statement."""
@@ -26,14 +28,18 @@ class Team:
     def run(self, task: Callable[[T], object], items: Iterable[T], done: Callable[[float], None]) -> None:
         """Call ``task(item)`` for every item in the pool, and ``done(part)`` in this thread, ``part`` going to 1.
 
+        ``done`` is called at each item's end, and every now and then while one takes long.
+
         If a task or ``done`` raises, the tasks that have not begun are dropped, and the error is raised once the
         running ones have ended.
         """
         futures = [self._pool.submit(task, item) for item in items]
         try:
-            for count, future in enumerate(futures, 1):
+            for count, future in enumerate(futures):
+                while not wait([future], PATIENCE).done:
+                    done(count / len(futures))
                 future.result()
-                done(count / len(futures))
+                done((count + 1) / len(futures))
         except BaseException:
             wait([future for future in futures if not future.cancel()])
             raise
