@@ -66,7 +66,7 @@ class Filter:
 
     def analyse(self, spectrum: Complex) -> Real:
         """The band of an image, from its half spectrum as `to_spectrum` gives it."""
-        part = np.empty(self._window.shape, np.complex64)
+        part = np.empty_like(self._window)
         columns, top = part.shape[1], self._top
         np.multiply(spectrum[:top, :columns], self._window[:top], out=part[:top])
         np.multiply(spectrum[len(spectrum) - self._bottom :, :columns], self._window[top:], out=part[top:])
@@ -150,7 +150,7 @@ class SteerablePyramid:
         order = self.orientations - 1
         kappa = 2 ** (2 * order) * math.factorial(order) ** 2 / (self.orientations * math.factorial(2 * order))
         t = _log_radius(*self._axes(scale))
-        window = np.sqrt(kappa) * _cosine(t) * 2.0 ** (-order * np.maximum(t, -1))
+        window: Double = math.sqrt(kappa) * _cosine(t) * 2.0 ** (-order * np.maximum(t, -1))
         return window.astype(np.float32)
 
 
