@@ -4,6 +4,7 @@ from app.errors import NotFoundError
 from app.methods.adsn import ADSN
 from app.methods.dsn import DSN
 from app.methods.heeger_bergen import HEEGER_BERGEN
+from app.methods.mix import MIX
 from app.methods.model import Method
 from app.methods.rayleigh import RAYLEIGH
 from app.methods.rpn import RPN
@@ -14,6 +15,7 @@ METHODS: dict[str, Method] = {
     "adsn": ADSN,
     "dsn": DSN,
     "texton": TEXTON,
+    "mix": MIX,
     "rayleigh": RAYLEIGH,
     "heeger-bergen": HEEGER_BERGEN,
 }

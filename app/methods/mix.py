@@ -1,0 +1,262 @@
+"""`mix`: barycentres of Gaussian textures."""
+
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, field_validator
+
+from app.errors import InvalidInputError
+from app.images.png import PngWriter, encode_png
+from app.methods.explanation import Exhibit, Explanation, Figure, Formula
+from app.methods.model import Context, Method, Picture, Size, Slot, Source
+from app.methods.options import SpotParams
+from app.methods.pictures import crops, refuse_infinite
+from app.methods.references import GAUSSIAN_MIXING, PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
+from app.methods.several import alike
+from app.synthesis.field import Noise
+from app.synthesis.levels import Levels
+from app.synthesis.mixing import Mixture
+from app.synthesis.team import Team
+
+PANEL = 512  # pixels of each side that a step of the path shows in the strip
+NO_NUMBERS = "must be numbers from 0 on with commas between them, such as 0.3,0.7, and not all of them 0"
+
+
+class MixParams(SpotParams):
+    """Parameters of the mixture."""
+
+    weights: str = Field(
+        "",
+        max_length=100,
+        title="Weights",
+        description="How much of each sample: numbers with commas between them, one for each sample in their order, "
+        "such as 0.3,0.7. Only their proportions count. Empty: as much of each.",
+    )
+    strip: int = Field(
+        8,
+        ge=0,
+        le=16,
+        title="Steps of the path",
+        description="How many textures to make along the path from the first sample (ρ = 0) to the second (ρ = 1), "
+        "beside the one of the given weights; 0 for none. A path needs two samples: with more of them, each one's own "
+        "texture is made instead.",
+    )
+
+    @field_validator("weights")
+    @classmethod
+    def _are_weights(cls, text: str) -> str:
+        try:
+            found = [float(number) for number in text.split(",")] if text.strip() else [1.0]
+        except ValueError:
+            raise ValueError(NO_NUMBERS) from None
+        if not all(0 <= weight < math.inf for weight in found) or not 0 < sum(found) < math.inf:
+            raise ValueError(NO_NUMBERS)
+        return text
+
+    def shares(self, count: int) -> list[float]:
+        """The weights of ``count`` samples, of sum 1."""
+        found = [float(number) for number in self.weights.split(",")] if self.weights.strip() else [1.0] * count
+        return [weight / sum(found) for weight in found]
+
+
+def check(sizes: Sequence[Size], params: MixParams) -> None:
+    """Refuse weights that are not one for each sample, and a path of a single step."""
+    given = len(params.shares(len(sizes)))
+    if given != len(sizes):
+        raise InvalidInputError(
+            f"There are {len(sizes)} samples and {given} weight{'s' * (given > 1)}: give one weight for each sample, "
+            "or none to take as much of each.",
+            "parameters.weights",
+        )
+    if params.strip == 1:
+        raise InvalidInputError(
+            "A path has two ends: take 2 steps or more, or 0 to make no path.",
+            "parameters.strip",
+        )
+
+
+class _Strip:
+    """Steps of a path side by side; of larger textures the upper left corner."""
+
+    def __init__(self, steps: int, height: int, width: int, channels: int, context: Context) -> None:
+        self._context = context
+        self._height, self._width = min(height, PANEL), min(width, PANEL)
+        kind = np.uint8 if context.depth == 8 else np.uint16
+        self._pixels = np.empty((self._height, steps * self._width, channels), kind)
+
+    def put(self, step: int, first: int, block: NDArray[np.unsignedinteger]) -> None:
+        part = block[: max(0, self._height - first), : self._width]
+        self._pixels[first : first + len(part), step * self._width : (step + 1) * self._width] = part
+
+    def picture(self) -> Picture:
+        height, width = self._pixels.shape[:2]
+        png = encode_png(self._pixels, self._context.threads)
+        return Picture("strip", "The path from the first sample to the second", width, height, png)
+
+
+class _Run:
+    """One run: makes its pictures one by one."""
+
+    def __init__(self, sources: Sequence[Source], params: MixParams, context: Context, team: Team) -> None:
+        self._sources, self._params, self._context, self._team = sources, params, context, team
+        samples = alike(sources)
+        self._height, self._width = params.height or len(samples[0]), params.width or samples[0].shape[1]
+        self._channels = samples[0].shape[2]
+        self._shares = params.shares(len(sources))
+        self._begin, self._end = 0.1, 0.3
+        noise = Noise(
+            self._height, self._width, seed=params.seed, rayleigh=True, alpha=params.alpha, window=params.window
+        )
+        self._mixture = Mixture(samples, self._shares, noise, team, self._progress)
+
+    def _progress(self, stage: str, part: float) -> None:
+        begin, end = (0.0, 0.1) if stage == "spot" else (self._begin, self._end)
+        self._context.progress(stage, begin + part * (end - begin))
+
+    def pictures(self) -> Iterator[Picture]:
+        path = self._params.strip if len(self._sources) == 2 else 0
+        further = path or len(self._sources) * (len(self._sources) > 2)
+        yield self._texture("texture", "Texture", self._shares, 0.4)
+        yield from crops(self._sources, self._context)
+        strip = _Strip(path, self._height, self._width, self._channels, self._context) if path else None
+        for step in range(further):
+            end = 0.45 + 0.5 * (step + 1) / further
+            if strip:
+                rho = step / (path - 1)
+                yield self._texture(f"mix-{step + 1}", f"ρ = {rho:.2f}", [1 - rho, rho], end, strip, step)
+            else:
+                alone = [float(index == step) for index in range(further)]
+                yield self._texture(f"sample-{step + 1}", f"Sample {step + 1} alone", alone, end)
+        if strip:
+            self._context.progress("strip", 0.95)
+            yield strip.picture()
+        self._context.progress("strip" if strip else "texture", 1.0)
+
+    def _texture(
+        self, name: str, title: str, weights: list[float], end: float, strip: _Strip | None = None, step: int = 0
+    ) -> Picture:
+        writer = PngWriter(self._width, self._height, self._channels, self._context.depth)
+
+        def write(first: int, block: NDArray[np.unsignedinteger]) -> None:
+            writer.write(first, block)
+            if strip:
+                strip.put(step, first, block)
+
+        self._begin, self._end = self._end, end
+        levels = Levels(write, self._channels, 0, self._sources[0].peak, 2**self._context.depth - 1)
+        self._mixture.emit(weights, levels, "strip" if strip else "texture")
+        return Picture(name, title, self._width, self._height, writer.finish(), "texture")
+
+
+def run(sources: Sequence[Source], params: MixParams, context: Context) -> Iterator[Picture]:
+    """The barycentre; then the path between two samples, or each one's own texture if there are more."""
+    check([Size(source.pixels.shape[1], source.pixels.shape[0], source.pixels.shape[2]) for source in sources], params)
+    refuse_infinite(sources)
+    with Team(context.threads) as team:
+        yield from _Run(sources, params, context, team).pictures()
+
+
+EXPLANATION = Explanation(
+    what=(
+        "What lies between two textures? A Gaussian texture is told by its mean and covariance, so one asks for a law "
+        "between two laws. The optimal transport distance compares them by moving one onto the other with the least "
+        "effort, and the *barycentre* of several models is the law whose squared distances to them, weighted, have the "
+        "least sum. The barycentres of two are a path from one to the other, of constant speed.",
+        "For random phase textures all this happens frequency by frequency. In grey one averages the Fourier moduli, "
+        "that is, the textons. In colour a phase is taken off every frequency of the second sample first, so that "
+        "its colours there meet those of the first as closely as they can; for three samples and more, such phases "
+        "are found by turns until none changes.",
+        "One noise drives all textures along the path, which the optimal coupling turns into a cross-fade, pixel by "
+        "pixel, of the two at its ends. What makes it a texture at every step is that those two are tuned to each "
+        "other: their grains and stains lie at the same places. Independent ones would lose up to half of "
+        "their variance in the middle.",
+    ),
+    formulas=(
+        Formula(
+            r"\hat{f}_\rho = (1 - \rho)\, \hat{f}_0 + \rho\, \hat{f}_1\, \frac{\hat{f}_1^* \hat{f}_0}"
+            r"{\lvert \hat{f}_1^* \hat{f}_0 \rvert}, \qquad 0 \le \rho \le 1",
+            r"$\hat{f}_0$ and $\hat{f}_1$ are the spectra of the two spots (vectors of their colours at each "
+            r"frequency, with $\hat{f}_1^* \hat{f}_0$ for their inner product). Means go along a straight line.",
+        ),
+        Formula(
+            r"W^2 = \sum_{\xi} \lVert \hat{f}_0(\xi) \rVert^2 + \lVert \hat{f}_1(\xi) \rVert^2 "
+            r"- 2\, \lvert \hat{f}_1(\xi)^* \hat{f}_0(\xi) \rvert",
+            r"The squared distance of the two models, up to a factor and that of their means: along the path it is "
+            r"$(\rho - \rho')^2\, W^2$.",
+        ),
+        Formula(
+            r"\hat{f} = \sum_i w_i\, \hat{f}_i\, \frac{\hat{f}_i^* \hat{f}}{\lvert \hat{f}_i^* \hat{f} \rvert}",
+            r"For more samples, of weights $w_i$ of sum 1, the barycentre's spot is a fixed point of this map.",
+        ),
+    ),
+    fails=(
+        "It mixes models, and inherits what they lose: edges and objects are gone from every step, the ends included. "
+        "Look at RPN or ADSN of each sample first.",
+        "Two samples whose energy lies at different frequencies or in different directions have no texture of medium "
+        "size or direction between them: halfway one sees both, each at half its contrast. Stripes do not turn, nor "
+        "do grains grow.",
+        "For four samples the textures keep to one random phase for all colours, which among all Gaussian textures "
+        "might not be the very best; for two and three it is.",
+    ),
+    figures=(
+        Figure(
+            "From granite to grass",
+            "Eight steps with one noise. The first is the ADSN of the granite, the last one of the grass.",
+            (
+                Exhibit(
+                    "mix",
+                    (("rockface_pink", "190,60,256,256"), ("grass_jungle002", "64,300,256,256")),
+                    {"seed": 1},
+                    ("crop", "crop-2", "strip"),
+                ),
+            ),
+        ),
+        Figure(
+            "Three samples",
+            "Sand, soil and lichen, and the barycentre of equal weights.",
+            (
+                Exhibit(
+                    "mix",
+                    (
+                        ("sand_desert009", "256,256,256,256"),
+                        ("soil_ground010", "416,352,256,256"),
+                        ("lichen_rock_gray", "190,40,256,256"),
+                    ),
+                    {"seed": 1},
+                    ("crop", "crop-2", "crop-3", "texture"),
+                ),
+            ),
+        ),
+        Figure(
+            "What it cannot do",
+            "Halfway between boards and paving there is neither: their edges were lost at the ends already.",
+            (
+                Exhibit(
+                    "mix",
+                    (("planks_wood", "96,160,256,256"), ("tiles02", "0,0,256,256")),
+                    {"strip": 5, "seed": 1},
+                    ("crop", "crop-2", "strip"),
+                ),
+            ),
+        ),
+    ),
+)
+
+MIX = Method(
+    name="mix",
+    title="Mixture of textures",
+    summary="Gaussian textures between two or more samples, along optimal transport.",
+    inputs=(
+        Slot("sample", "First sample", "A photograph; crop a homogeneous region of it. The path begins here."),
+        Slot("other", "Further sample", "What to mix it with: the path ends here. Up to two more may follow."),
+    ),
+    params=MixParams,
+    references=(GAUSSIAN_MIXING, RANDOM_PHASE_TEXTURES, PERIODIC_PLUS_SMOOTH),
+    explanation=EXPLANATION,
+    check=check,
+    run=run,
+    more=2,
+    phase=True,
+)
