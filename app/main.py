@@ -18,7 +18,7 @@ from app.settings import ROOT, Settings
 from app.store.blobs import FileBlobs
 from app.store.sql import SqlStore
 from app.web import docs, health, pages, problems, uploads
-from app.web.api import events, experiments, methods, outputs, samples, synthesize
+from app.web.api import events, experiments, methods, outputs, samples, structure, synthesize
 from app.web.head import HeadAsGet
 from app.web.limits import BodyLimit
 from app.web.metrics import CountRequests, Metrics
@@ -76,7 +76,7 @@ def create_app(settings: Settings | None = None, service: Service | None = None)
     app.state.stopping = asyncio.Event()
     app.state.upload_threads = anyio.CapacityLimiter(UPLOADS_AT_ONCE)
     problems.install(app, pages.render_error)
-    for part in (methods, samples, experiments, events, outputs, synthesize, health, docs, pages):
+    for part in (methods, samples, structure, experiments, events, outputs, synthesize, health, docs, pages):
         app.include_router(part.router)
     app.mount("/static", StaticFiles(directory=ROOT / "static"), name="static")
     app.mount(docs.SWAGGER_URL, StaticFiles(directory=docs.SWAGGER_FILES), name="swagger")

@@ -8,7 +8,7 @@ from typing import Any
 from app.images.crop import Rectangle
 from app.images.read import read_crop
 from app.methods.model import Picture, Progress, Source
-from app.synthesis.structure import CENTRE, structure_of
+from app.synthesis.structure import CENTRE, delta_of
 
 DIGITS = 6  # of a number in the record
 
@@ -37,10 +37,10 @@ def diagnose(sources: Sequence[Source], staged: Sequence[tuple[Picture, Path]], 
     outputs: list[float] = []
     for source in sources:
         progress("structure", 0.92 + 0.06 * len(inputs) / total)
-        inputs.append(round(structure_of(source.pixels).delta, DIGITS))
+        inputs.append(round(delta_of(source.pixels), DIGITS))
     for picture, path in textures:
         progress("structure", 0.92 + 0.06 * (len(inputs) + len(outputs)) / total)
-        outputs.append(round(structure_of(read_crop(path, _centre(picture))).delta, DIGITS))
+        outputs.append(round(delta_of(read_crop(path, _centre(picture))), DIGITS))
     facts = [{"output": picture.name, **asdict(fact)} for picture, _ in staged for fact in picture.facts]
     return {"structure": {"inputs": inputs, "outputs": outputs}, "facts": facts}
 

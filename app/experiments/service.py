@@ -14,6 +14,7 @@ from app.experiments.direct import Direct
 from app.experiments.following import Following
 from app.experiments.housekeeping import Housekeeping, Pruned
 from app.experiments.intake import SampleIntake
+from app.experiments.meter import Meter
 from app.experiments.model import Experiment, Output, Page, Sample, Snapshot
 from app.experiments.outputs import Outputs
 from app.experiments.ownership import new_token, same, token_digest
@@ -24,6 +25,7 @@ from app.experiments.submission import NewExperiment, prepare
 from app.images.convert import Format
 from app.images.crop import Rectangle
 from app.settings import Settings
+from app.synthesis.structure import SIGMA, Structure
 
 CACHE_BYTES = 1 << 30
 
@@ -47,18 +49,14 @@ class Service:
         self._settings = settings
         cache = FileCache(settings.data_dir / "cache", CACHE_BYTES)
         self._pictures = Pictures(blobs, cache)
+        self._meter = Meter(blobs)
         self._following = Following(store, executor)
         self._outputs = Outputs(
             store, blobs, executor, self._pictures, self._following, queue_limit=settings.queue_limit
         )
         self._intake = SampleIntake(store, blobs, settings)
-        self._housekeeping = Housekeeping(
-            store,
-            blobs,
-            cache,
-            sample_keep=timedelta(hours=settings.sample_keep_hours),
-            longest_run=timedelta(hours=1, seconds=settings.time_limit),
-        )
+        keep, longest = timedelta(hours=settings.sample_keep_hours), timedelta(hours=1, seconds=settings.time_limit)
+        self._housekeeping = Housekeeping(store, blobs, cache, sample_keep=keep, longest_run=longest)
         self._direct = Direct(
             self._intake, self._housekeeping, self._outputs, self._following, self._submit_transient, self._forget
         )
@@ -127,6 +125,10 @@ class Service:
     def rendition(self, sample_id: str, size: int | None) -> tuple[Path, str]:
         """A file that browsers show, and its media type; ``size`` bounds the longer side, None is the full size."""
         return self._pictures.rendition(self._store.sample(sample_id), size)
+
+    def structure(self, sample_id: str, crop: Rectangle | None = None, sigma: float = SIGMA) -> Structure:
+        """How structured a crop is, see `Meter.structure`. Raises `NotFoundError` or `InvalidInputError`."""
+        return self._meter.structure(self._store.sample(sample_id), crop, sigma)
 
     # experiments
 

@@ -1,0 +1,68 @@
+"""``/api/v1/samples/{id}/structure``: whether a crop is a micro-texture."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query, Request
+from pydantic import BaseModel, Field
+from starlette.concurrency import run_in_threadpool
+
+from app.experiments.meter import Verdict, reading
+from app.images.crop import Rectangle
+from app.synthesis.structure import SIGMA
+from app.web.api.records import API, Crop
+from app.web.api.samples import SampleId
+from app.web.deps import ServiceDep, in_upload_thread
+from app.web.openapi import problems
+
+LARGEST_SIGMA = 64
+
+router = APIRouter(prefix=f"{API}/samples", tags=["samples"])
+
+
+class StructureIndex(BaseModel):
+    """How structured a crop is."""
+
+    delta: float = Field(
+        description="The structure index δ: the share of total variation that the crop lacks against its own random "
+        "phase textures, at the scale σ. About 0 for a micro-texture, 0.1 to 0.4 for bricks, tiles and leaves."
+    )
+    z: float = Field(
+        description="The same difference in standard deviations of the total variation of those textures. It grows "
+        "with the crop and with sharpness; δ tells better what a texture is."
+    )
+    sigma: float = Field(description="Deviation, in pixels, of the Gaussian that smoothed the crop first.")
+    verdict: Verdict = Field(description="What δ says, in one word.")
+    words: str = Field(description="… and in a sentence.")
+    crop: Crop = Field(description="What was asked about. Of a side beyond 1024 pixels the middle 1024 are measured.")
+
+
+@router.get("/{sample_id}/structure", summary="Is it a micro-texture?", responses=problems(404, 422))
+async def read_structure(
+    sample_id: SampleId,
+    request: Request,
+    service: ServiceDep,
+    crop: Annotated[
+        str | None,
+        Query(
+            pattern=r"^\d{1,6},\d{1,6},\d{1,6},\d{1,6}$",
+            description="`x,y,width,height` in pixels of the upright sample; by default all of it.",
+            examples=["96,96,320,320"],
+        ),
+    ] = None,
+    sigma: Annotated[
+        float, Query(ge=0, le=LARGEST_SIGMA, description="Scale in pixels, for δ and z. The verdict is meant for 2.")
+    ] = SIGMA,
+) -> StructureIndex:
+    """Measure a crop, within a tenth of a second for 512 × 512 pixels: random phase models reproduce micro-textures."""
+    sample = await run_in_threadpool(service.sample, sample_id)
+    area = Rectangle.parse(crop) if crop else Rectangle(0, 0, sample.width, sample.height)
+    found = await in_upload_thread(request, service.structure, sample_id, area, sigma)
+    said = reading(found.delta)
+    return StructureIndex(
+        delta=round(found.delta, 4),
+        z=round(found.z, 2),
+        sigma=sigma,
+        verdict=said.verdict,
+        words=said.words,
+        crop=Crop(x=area.x, y=area.y, width=area.width, height=area.height),
+    )
