@@ -48,7 +48,7 @@ def meter_place(delta: float) -> float:
 
 
 TEMPLATES.env.filters.update(label=label, reading=reading, meter_place=meter_place, mathml=mathml, prose=prose)
-TEMPLATES.env.globals["meter_limits"] = (MICRO, STRUCTURED)
+TEMPLATES.env.globals.update(meter_limits=(MICRO, STRUCTURED), meter_end=METER_END)
 
 
 def render(request: Request, template: str, context: Mapping[str, Any], status: int = 200) -> Response:

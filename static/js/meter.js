@@ -1,0 +1,54 @@
+// The structure meter beside a crop. It follows the crop while that is dragged: one question at a time, the next one about
+// the newest crop. Its sentence is announced, its number is not, so that dragging does not chatter.
+
+const SIDES = ["x", "y", "width", "height"];
+
+class Meter {
+  constructor(root) {
+    this.root = root;
+    const around = root.closest("fieldset, form");
+    this.fields = SIDES.map((side) => around.querySelector(`[name$="crop.${side}"]`));
+    this.select = around.querySelector("select[name$=sample]");
+    this.bar = root.querySelector(".meter-bar");
+    this.asked = "";
+    this.asking = false;
+    root.closest("form").addEventListener("crop", () => this.follow());
+    this.follow();
+  }
+
+  address() {
+    const sample = this.select ? this.select.value : this.root.dataset.sample;
+    const crop = this.fields.map((field) => field.value);
+    if (!sample || !crop.every((value) => /^\d+$/.test(value))) return "";
+    return `/api/v1/samples/${encodeURIComponent(sample)}/structure?crop=${crop.join(",")}`;
+  }
+
+  async follow() {
+    if (this.asking) return;
+    this.asking = true;
+    for (let address = this.address(); address && address !== this.asked; address = this.address()) {
+      this.asked = address;
+      try {
+        const answer = await fetch(address);
+        if (answer.ok) this.show(await answer.json());
+        else this.root.hidden = true; // such as a crop that holds transparent pixels: the form says so when it is sent
+      } catch {
+        break; // offline: the next move of the crop asks again
+      }
+    }
+    this.asking = false;
+  }
+
+  show({ delta, verdict, words }) {
+    const shown = Math.max(0, delta);
+    const place = Math.min(1, Math.sqrt(shown / Number(this.bar.dataset.end)));
+    this.bar.querySelector(".meter-value").setAttribute("width", 100 * place);
+    this.root.querySelector(".meter-number").textContent = shown.toFixed(2);
+    this.root.dataset.verdict = verdict;
+    this.root.hidden = false;
+    const sentence = this.root.querySelector(".structure-words");
+    if (sentence.textContent !== words) sentence.textContent = words;
+  }
+}
+
+for (const root of document.querySelectorAll(".structure[data-sample]")) new Meter(root);
