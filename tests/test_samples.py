@@ -1,8 +1,11 @@
 """The catalogue of the bundled photographs is complete, honest and points at real regions."""
 
 import json
+import subprocess
+import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from PIL import Image
 
@@ -64,3 +67,16 @@ def test_an_entry_without_its_file_is_an_error_that_names_it(tmp_path: Path) -> 
     (tmp_path / CATALOGUE).write_text(json.dumps([entry]), encoding="utf-8")
     with pytest.raises(ValueError, match=entry["file"]):
         bundled(tmp_path)
+
+
+def test_drawn_samples_come_last_and_can_be_drawn_again(photographs: list[BundledSample], tmp_path: Path) -> None:
+    """A grey level of one at most may come of another version of the numerical libraries."""
+    drawn = [photograph for photograph in photographs if photograph.kind == "drawn"]
+    assert drawn == photographs[-len(drawn) :]
+    subprocess.run([sys.executable, ROOT / "scripts" / "drawn_samples.py", tmp_path], check=True)
+    assert {path.name for path in tmp_path.iterdir()} == {photograph.path.name for photograph in drawn}
+    for photograph in drawn:
+        bundled_pixels, again = (
+            np.asarray(Image.open(directory / photograph.path.name), np.int16) for directory in (SAMPLES, tmp_path)
+        )
+        assert np.abs(bundled_pixels - again).max() <= 1
