@@ -15,9 +15,10 @@ from app.methods.pictures import crops, encode, refuse_infinite
 from app.methods.random_phase import INPUTS
 from app.methods.references import HEEGER_BERGEN as ARTICLE
 from app.methods.references import IPOL_HEEGER_BERGEN, PERIODIC_PLUS_SMOOTH, STEERABLE_PYRAMID
-from app.synthesis.heeger_bergen import Channel, Decomposition, Sample, Synthesis, Work
+from app.synthesis.heeger_bergen import Channel, Decomposition, Sample, Synthesis
 from app.synthesis.pyramid import Band, SteerablePyramid
 from app.synthesis.team import Team
+from app.synthesis.work import Work
 
 VIEW = 512  # pixels of a side of the views of iterations, at most
 CELL = 256  # and of one sub-band's

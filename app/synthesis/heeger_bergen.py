@@ -11,15 +11,12 @@ band the sample's own part, so that the mirror images' orientations are not coun
 References
 ----------
 Heeger, Bergen, "Pyramid-Based Texture Analysis/Synthesis", SIGGRAPH 1995; Briand, Vacher, Galerne, Rabin, "The
-Heeger & Bergen Pyramid Based Texture Synthesis Algorithm", IPOL 2014 (algorithms 2 and 4, section on edges).
+Heeger-Bergen Pyramid-Based Texture Synthesis Algorithm", IPOL 2014.
 """
 
-import threading
-from collections import deque
-from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from itertools import product
-from typing import Literal, TypeVar
+from typing import Literal
 
 import numpy as np
 from numpy.random import SFC64, Generator, SeedSequence
@@ -28,13 +25,12 @@ from numpy.typing import NDArray
 from app.synthesis.colour_space import ColourSpace
 from app.synthesis.histogram import match, quantiles
 from app.synthesis.periodic import smooth_planes
-from app.synthesis.pyramid import Band, Complex, Filter, SteerablePyramid, to_image, to_spectrum
+from app.synthesis.pyramid import Band, Complex, SteerablePyramid, Total, to_image, to_spectrum
 from app.synthesis.team import Team
+from app.synthesis.work import Progress, Work
 
 Real = NDArray[np.float32]
-Progress = Callable[[str, float], None]
 Edges = Literal["periodic", "mirror"]
-T = TypeVar("T")
 
 FINEST = Band(0, None)
 
@@ -46,32 +42,6 @@ class Decomposition:
     scales: int = 4
     orientations: int = 4
     edges: Edges = "periodic"
-
-
-class Work:
-    """Shares work out over a team; when the progress raises, the pieces that are running stop too."""
-
-    def __init__(self, team: Team, progress: Progress) -> None:
-        self._team, self._progress = team, progress
-        self._stopped = threading.Event()
-
-    def alive(self) -> None:
-        """Raise if the work is to stop: for pieces of work to call between their steps."""
-        if self._stopped.is_set():
-            raise InterruptedError
-
-    def run(self, stage: str, task: Callable[[T], object], items: Iterable[T]) -> None:
-        """Call ``task(item)`` for every item, the progress going from 0 to 1 under the stage's name."""
-
-        def done(part: float) -> None:
-            try:
-                self._progress(stage, part)
-            except BaseException:
-                self._stopped.set()
-                raise
-
-        done(0)
-        self._team.run(task, items, done)
 
 
 class Channel:
@@ -155,13 +125,13 @@ class Synthesis:
 
         def begin(channel: int) -> None:
             noise = Generator(SFC64(SeedSequence(seed, spawn_key=(channel,))))
-            self._finish(channel, noise.standard_normal(pyramid.shape(FINEST), np.float32))
+            self.take(channel, noise.standard_normal(pyramid.shape(FINEST), np.float32))
 
         work.run("noise", begin, range(len(sample.pixels)))
 
     def iterate(self, stage: str) -> None:
         """Give all bands, and then the pixels, the sample's histograms."""
-        totals = [_Total(self._pyramid, spectrum.shape) for spectrum in self._spectra]
+        totals = [Total(self._pyramid, spectrum.shape) for spectrum in self._spectra]
 
         def match_band(item: tuple[int, Band]) -> None:
             channel, band = item
@@ -172,11 +142,12 @@ class Synthesis:
             part = window.synthesise(values)
             self._work.alive()
             if totals[channel].complete(band, window, part):
-                self._finish(channel, to_image(totals[channel].spectrum, self._pyramid.shape(FINEST)))
+                self.take(channel, to_image(totals[channel].spectrum, self._pyramid.shape(FINEST)))
 
         self._work.run(stage, match_band, list(product(range(len(self._planes)), self._pyramid.bands)))
 
-    def _finish(self, channel: int, plane: Real) -> None:
+    def take(self, channel: int, plane: Real) -> None:
+        """Go on from a plane, which is given the sample's pixel histogram first."""
         self._work.alive()
         match(plane, self._sample.pixels[channel], self._work.alive)
         self._planes[channel], self._spectra[channel] = plane, to_spectrum(plane)
@@ -206,25 +177,6 @@ class Synthesis:
             deviation = float(asked.std()) or 1
             distances[band] = float(np.sqrt(np.square(found - asked).mean())) / deviation
         return distances
-
-
-class _Total:
-    """A spectrum as the sum of its bands, in one order whichever is done first: sums of floats depend on it."""
-
-    def __init__(self, pyramid: SteerablePyramid, shape: tuple[int, ...]) -> None:
-        self.spectrum = np.zeros(shape, np.complex64)
-        self._expected = deque(pyramid.bands)
-        self._waiting: dict[Band, tuple[Filter, Complex]] = {}
-        self._lock = threading.Lock()
-
-    def complete(self, band: Band, window: Filter, part: Complex) -> bool:
-        """Take one band's part; whether it was the last one that was missing."""
-        with self._lock:
-            self._waiting[band] = window, part
-            while self._expected and self._expected[0] in self._waiting:
-                ready, values = self._waiting.pop(self._expected.popleft())
-                ready.add(values, self.spectrum)
-            return not self._expected
 
 
 def _ordered(values: Real, shape: tuple[int, int]) -> Real:

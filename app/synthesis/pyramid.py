@@ -24,6 +24,8 @@ Algorithm", IPOL 2014.
 """
 
 import math
+import threading
+from collections import deque
 from typing import NamedTuple
 
 import numpy as np
@@ -61,7 +63,7 @@ class Filter:
     """The window of one band on the part of the half spectrum that the band keeps."""
 
     def __init__(self, window: Complex, shape: tuple[int, int]) -> None:
-        self._window, self.shape = window, shape
+        self._window, self._shape = window, shape
         self._top, self._bottom = (shape[0] + 1) // 2, shape[0] // 2  # rows of k₁ ≥ 0, and of k₁ < 0
 
     def analyse(self, spectrum: Complex) -> Real:
@@ -70,7 +72,7 @@ class Filter:
         columns, top = part.shape[1], self._top
         np.multiply(spectrum[:top, :columns], self._window[:top], out=part[:top])
         np.multiply(spectrum[len(spectrum) - self._bottom :, :columns], self._window[top:], out=part[top:])
-        return to_image(part, self.shape)
+        return to_image(part, self._shape)
 
     def synthesise(self, values: Real) -> Complex:
         """What a band contributes to the image's spectrum, cut to the frequencies it keeps."""
@@ -152,6 +154,25 @@ class SteerablePyramid:
         t = _log_radius(*self._axes(scale))
         window: Double = math.sqrt(kappa) * _cosine(t) * 2.0 ** (-order * np.maximum(t, -1))
         return window.astype(np.float32)
+
+
+class Total:
+    """A spectrum as the sum of its bands, in one order whichever is done first: sums of floats depend on it."""
+
+    def __init__(self, pyramid: SteerablePyramid, shape: tuple[int, ...]) -> None:
+        self.spectrum = np.zeros(shape, np.complex64)
+        self._expected = deque(pyramid.bands)
+        self._waiting: dict[Band, tuple[Filter, Complex]] = {}
+        self._lock = threading.Lock()
+
+    def complete(self, band: Band, window: Filter, part: Complex) -> bool:
+        """Take one band's part; whether it was the last one that was missing."""
+        with self._lock:
+            self._waiting[band] = window, part
+            while self._expected and self._expected[0] in self._waiting:
+                ready, values = self._waiting.pop(self._expected.popleft())
+                ready.add(values, self.spectrum)
+            return not self._expected
 
 
 def _log_radius(y: Double, x: Double) -> Double:
