@@ -87,3 +87,20 @@ STEERABLE_PYRAMID = Reference(
     kind="inproceedings",
     pages="444--447",
 )
+EFROS_LEUNG = Reference(
+    "A. A. Efros, T. K. Leung",
+    "Texture Synthesis by Non-parametric Sampling",
+    "Proceedings of the Seventh IEEE International Conference on Computer Vision (ICCV)",
+    1999,
+    "https://doi.org/10.1109/ICCV.1999.790383",
+    kind="inproceedings",
+    pages="1033--1038",
+)
+IPOL_EFROS_LEUNG = Reference(
+    "C. Aguerrebere, Y. Gousseau, G. Tartavel",
+    "Exemplar-based Texture Synthesis: the Efros-Leung Algorithm",
+    "Image Processing On Line 3",
+    2013,
+    "https://doi.org/10.5201/ipol.2013.59",
+    pages="223--241",
+)
