@@ -11,7 +11,7 @@ from app.experiments.service import Service
 from app.experiments.submission import NewExperiment, NewInput
 from app.images.png import encode_png
 from app.methods.model import Fact, Picture, Source
-from app.synthesis.structure import structure_index, structure_of
+from app.synthesis.structure import delta_of, structure_index
 
 SECONDS = 30.0
 
@@ -53,7 +53,7 @@ def test_inputs_and_textures_are_measured_and_views_are_not(tmp_path: Path) -> N
 def test_of_a_large_texture_the_same_centre_is_measured_as_of_an_array(tmp_path: Path) -> None:
     noise = np.random.default_rng(2).integers(0, 256, (1101, 1300, 1), dtype=np.uint8)
     (found,) = diagnose([], [staged(tmp_path, noise, kind="texture")], silent)["structure"]["outputs"]
-    assert found == pytest.approx(structure_of(noise.astype(np.float32)).delta, abs=1e-6)
+    assert found == pytest.approx(delta_of(noise.astype(np.float32)), abs=1e-6)
 
 
 def test_facts_are_kept_with_the_name_of_their_output(tmp_path: Path) -> None:
