@@ -46,7 +46,7 @@ def gaussian_window(half_patch: int) -> Double:
     --------
     >>> g = gaussian_window(4)
     >>> g.shape, round(float(g[4, 4] / g[4, 0]), 2), round(float(g.sum()), 12)
-    ((9, 9), 57.16, 1.0)
+    ((9, 9), 57.14, 1.0)
     """
     side = 2 * half_patch + 1
     profile = np.exp(-0.5 * (np.arange(-half_patch, half_patch + 1) * 6.4 / side) ** 2)

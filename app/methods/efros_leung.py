@@ -1,0 +1,189 @@
+"""`efros-leung`: non-parametric sampling."""
+
+from collections.abc import Iterator, Sequence
+from math import isqrt, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from app.errors import InvalidInputError
+from app.methods.explanation import Exhibit, Explanation, Figure, Formula
+from app.methods.model import Context, Fact, Method, Picture, Size, Source, StillParams
+from app.methods.pictures import crops, encode, refuse_infinite
+from app.methods.random_phase import INPUTS
+from app.methods.references import EFROS_LEUNG as EFROS_LEUNG_ARTICLE
+from app.methods.references import IPOL_EFROS_LEUNG
+from app.synthesis.efros_leung import efros_leung, verbatim_share
+
+HALF_PATCH = 4
+MOST_WORK = 10**12  # products: a minute or two on two processors
+USUAL_WORK = 3 * 10**11  # of a texture whose size was not asked for
+MOST_TABLE = 1 << 26  # numbers of four bytes that the search holds
+
+
+class EfrosLeungParams(StillParams):
+    """Parameters of non-parametric sampling."""
+
+    half_patch: int = Field(
+        HALF_PATCH,
+        ge=1,
+        le=16,
+        title="Half-patch",
+        description="How far the windows that are compared reach from their middle, in pixels: 4 makes them 9 × 9. "
+        "About the size of the largest element of the texture is right: a smaller one loses its arrangement, a "
+        "larger one copies the crop piece by piece and takes longer.",
+    )
+    tolerance: float = Field(
+        0.1,
+        ge=0,
+        le=1,
+        title="Tolerance",
+        description="A pixel is drawn among those whose windows are at most so much worse than the best, as a part of "
+        "the best one's distance. 0 always takes the best, and copies most; more than 0.3 soon grows garbage.",
+    )
+
+
+def _terms(size: Size, half_patch: int) -> tuple[int, int]:
+    """Positions of a window in the crop, and products that comparing it with one of them takes."""
+    side = 2 * half_patch + 1
+    positions = max(0, size.width - side + 1) * max(0, size.height - side + 1)
+    return positions, side * side * (size.channels + 1)
+
+
+def default_size(sizes: Sequence[Size]) -> tuple[int, int]:
+    """The crop's own, or in its proportions what takes about half a minute."""
+    size = sizes[0]
+    positions, products = _terms(size, HALF_PATCH)
+    factor = min(1.0, sqrt(USUAL_WORK / max(1, positions * products * size.width * size.height)))
+    return max(1, int(size.width * factor)), max(1, int(size.height * factor))
+
+
+def check(sizes: Sequence[Size], params: EfrosLeungParams) -> None:
+    """Refuse a crop that holds no window, or more than the search can hold; and what would take too long."""
+    size, side = sizes[0], 2 * params.half_patch + 1
+    if min(size.width, size.height) < side:
+        raise InvalidInputError(
+            f"A half-patch of {params.half_patch} compares windows of {side} × {side} pixels, and the crop is "
+            f"{size.width} × {size.height}: take a larger crop or a smaller half-patch.",
+            "parameters.half_patch",
+        )
+    positions, products = _terms(size, params.half_patch)
+    if positions * products > MOST_TABLE:
+        most = isqrt(MOST_TABLE // products) + side - 1
+        raise InvalidInputError(
+            f"The crop of {size.width} × {size.height} pixels is too large to be searched for every pixel: with "
+            f"windows of {side} × {side} it can be about {most} × {most}. Crop a smaller, typical part "
+            "(96 × 96 is usual).",
+            "inputs.0.crop",
+        )
+    default = default_size(sizes)
+    width, height = params.width or default[0], params.height or default[1]
+    if width * height * positions * products > MOST_WORK:
+        texture = isqrt(MOST_WORK // (positions * products))
+        crop = isqrt(MOST_WORK // (width * height * products)) + side - 1
+        instead = f", or crop at most about {crop} × {crop}" if crop >= 2 * side else ""
+        raise InvalidInputError(
+            f"Every pixel of the texture is searched for in the whole crop: {width} × {height} pixels from "
+            f"{size.width} × {size.height} with windows of {side} × {side} would take too long. From this crop ask for "
+            f"at most about {texture} × {texture}{instead}.",
+            "parameters.width",
+        )
+
+
+def run(sources: Sequence[Source], params: EfrosLeungParams, context: Context) -> Iterator[Picture]:
+    """The texture; then where its pixels come from, and when they came."""
+    source = sources[0]
+    h, peak = source.pixels, source.peak
+    size = Size(h.shape[1], h.shape[0], h.shape[2])
+    check([size], params)
+    refuse_infinite(sources)
+    width, height = default_size([size])
+    grown = efros_leung(
+        h,
+        params.height or height,
+        params.width or width,
+        half_patch=params.half_patch,
+        tolerance=params.tolerance,
+        seed=params.seed,
+        threads=context.threads,
+        progress=context.between(0, 0.97),
+    )
+    share = Fact(
+        "verbatim", "Pixels copied along with their left or upper neighbour", verbatim_share(grown.copied), "%"
+    )
+    yield encode("texture", "Texture", grown.texture, peak, context, kind="texture", facts=(share,))
+    context.progress("views", 0.97)
+    yield from crops(sources, context)
+    colours = _coordinate_colours(*h.shape[:2])
+    copied = colours[grown.copied[:, :, 0], grown.copied[:, :, 1]]
+    yield encode("copy-map", "Copy map: where in the crop each pixel was taken", copied, 1, context)
+    yield encode("copy-map-key", "Key of the copy map: the colours of the crop's places", colours, 1, context)
+    order = grown.order.astype(np.float32)
+    yield encode("order", "Order of growth, from black to white", order, max(1, grown.order.max()), context)
+    context.progress("views", 1.0)
+
+
+def _coordinate_colours(height: int, width: int) -> NDArray[np.float32]:
+    """A colour for every place: red grows to the right, green downwards, blue to the upper left."""
+    y, x = np.linspace(0, 1, height)[:, None], np.linspace(0, 1, width)[None, :]
+    return np.stack(np.broadcast_arrays(x, y, 1 - (x + y) / 2), axis=2).astype(np.float32)
+
+
+EXPLANATION = Explanation(
+    what=(
+        "The texture grows around a small patch that is taken from the crop at random. For the next pixel, what is "
+        "already there in a square window around it is compared with all windows of the crop; one of those that "
+        "match best is drawn, and the pixel in its middle is copied. Nothing is modelled, so nothing is smoothed "
+        "away: edges, bricks and letters come back, as far as a window sees them.",
+        "Pixels are filled layer after layer, those with the most known neighbours first, so that every choice rests "
+        "on as much as possible. A Gaussian weight lets near neighbours count more than far ones.",
+        "Each pixel is a pixel of the crop, and the *copy map* shows which: every place of the crop has a colour (see "
+        "the key), and every pixel of the texture wears the colour of the place it was taken from. Patches of a smooth "
+        "gradient are pieces of the crop copied as they are; confetti is new. The order of growth is shown in grey, "
+        "from the first pixel, black, to the last.",
+    ),
+    formulas=(
+        Formula(
+            r"d(x, y) = \frac{\sum_{k \in K_x} G(k)\, \| u(x + k) - h(y + k) \|^2}{\sum_{k \in K_x} G(k)}, \qquad "
+            r"K_x \subset [-n, n]^2",
+            r"The distance between the window around the pixel $x$ of the texture $u$ and the one around $y$ in the "
+            r"crop $h$; $K_x$ holds the places already filled, $n$ is the half-patch.",
+        ),
+        Formula(
+            r"u(x) = h(Y), \quad Y \text{ uniform among } \{ y : d(x, y) \leq (1 + \varepsilon) \min_{y'} d(x, y') \}",
+            r"The pixel is drawn among the best ones, up to the tolerance $\varepsilon$.",
+        ),
+        Formula(
+            r"G(k) \propto e^{-|k|^2 / 2 \sigma^2}, \qquad \sigma = \frac{2n + 1}{6.4}",
+            r"The weights, as Efros and Leung chose them.",
+        ),
+    ),
+    fails=("TO WRITE",),
+    figures=(
+        Figure(
+            "A",
+            "A.",
+            (Exhibit("efros-leung", (("tiles02", "0,0,96,96"),), {"width": 128, "height": 128, "seed": 1}),),
+        ),
+        Figure(
+            "B",
+            "B.",
+            (Exhibit("efros-leung", (("tiles02", "0,0,96,96"),), {"width": 128, "height": 128, "seed": 1}),),
+        ),
+    ),
+)
+
+EFROS_LEUNG = Method(
+    name="efros-leung",
+    title="Non-parametric sampling (Efros–Leung)",
+    summary="Grows a texture from a seed, copying pixels of the crop whose surroundings match.",
+    inputs=INPUTS,
+    params=EfrosLeungParams,
+    references=(EFROS_LEUNG_ARTICLE, IPOL_EFROS_LEUNG),
+    explanation=EXPLANATION,
+    check=check,
+    run=run,
+    size=default_size,
+    toroidal=lambda params: False,
+)
