@@ -3,9 +3,11 @@
 from app.errors import NotFoundError
 from app.methods.adsn import ADSN
 from app.methods.dsn import DSN
+from app.methods.efros_leung import EFROS_LEUNG
 from app.methods.heeger_bergen import HEEGER_BERGEN
 from app.methods.mix import MIX
 from app.methods.model import Method
+from app.methods.modulus_phase import MODULUS_PHASE
 from app.methods.rayleigh import RAYLEIGH
 from app.methods.rpn import RPN
 from app.methods.texton import TEXTON
@@ -16,8 +18,10 @@ METHODS: dict[str, Method] = {
     "dsn": DSN,
     "texton": TEXTON,
     "mix": MIX,
+    "modulus-phase": MODULUS_PHASE,
     "rayleigh": RAYLEIGH,
     "heeger-bergen": HEEGER_BERGEN,
+    "efros-leung": EFROS_LEUNG,
 }
 
 
