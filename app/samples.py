@@ -1,4 +1,4 @@
-"""The photographs, and a few drawings, that come with the service: what each one shows, where to crop it, whom to thank."""
+"""The photographs, and a few drawings, that come with the service: what each shows, where to crop it, whom to thank."""
 
 import json
 from dataclasses import dataclass

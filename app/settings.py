@@ -45,6 +45,7 @@ class Settings(BaseSettings):
         None, description="Public address, e.g. https://texture.example.org; default: the request's."
     )
     operator_token: SecretStr | None = Field(None, description="Bearer token that may delete any experiment.")
+    catalogue: bool = Field(True, description="Whether the figures of the pages are made in the background.")
     sample_keep_hours: float = Field(24.0, ge=0, description="Hours an uploaded sample without an experiment is kept.")
     log_level: Literal["debug", "info", "warning", "error"] = Field(
         "info", description="The least that is logged: debug, info, warning or error."

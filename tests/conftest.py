@@ -19,6 +19,8 @@ ARGUMENTS = [
     "--disable-sync",
 ]
 
+os.environ.setdefault("MICROTEXTURE_CATALOGUE", "false")  # figures in the background would disturb what others measure
+
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Put the browser's tests last: Playwright keeps an event loop running here, where others start their own."""

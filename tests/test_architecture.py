@@ -20,7 +20,7 @@ LAYERS = (
     {"app.errors", "app.settings"},
     {"app.synthesis"},
     {"app.images"},
-    {"app.methods", "app.samples"},
+    {"app.methods", "app.samples", "app.gallery"},
     {"app.experiments"},
     {"app.store", "app.executor"},
     {"app.web"},

@@ -10,6 +10,7 @@ from app.errors import DeletedError, NotFoundError
 from app.experiments.cache import FileCache
 from app.experiments.model import Experiment
 from app.experiments.ports import BlobStore, ExperimentStore
+from app.gallery.identity import is_exhibit
 
 log = logging.getLogger(__name__)
 
@@ -92,11 +93,15 @@ class Housekeeping:
         self._remove_files([sample.digest for sample in removed])
 
     def prune(self, older_than: timedelta | None) -> Pruned:
-        """Remove what nothing refers to and, where ``older_than`` is given, experiments that finished longer ago."""
+        """Remove what nothing refers to and, where ``older_than`` is given, experiments that finished longer ago.
+
+        What the program's own pages show stays.
+        """
         now = datetime.now(UTC)
         stale = self._delete_all(self._store.transient_before(now - self._longest_run))
         if older_than is not None:
-            stale += self._delete_all(self._store.finished_before(now - older_than))
+            finished = self._store.finished_before(now - older_than)
+            stale += self._delete_all(name for name in finished if not is_exhibit(name))
         samples = self._store.remove_unused_samples(now - self._sample_keep)
         files = self._remove_files(self._blobs.digests())
         files += self._blobs.remove_temporary(now - self._longest_run)

@@ -24,6 +24,10 @@ class ExperimentStore(Protocol):
 
     def add(self, experiment: Experiment) -> None: ...
 
+    def replace(self, experiment: Experiment) -> None:
+        """Add it in the place of one of the same identifier, whatever became of that, or of its tombstone."""
+        ...
+
     def get(self, experiment_id: str) -> Experiment:
         """Raises `NotFoundError`, or `DeletedError` for one that was deleted."""
         ...

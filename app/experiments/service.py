@@ -10,6 +10,7 @@ from typing import Any, Literal
 
 from app.errors import BusyError, ForbiddenError
 from app.experiments.cache import FileCache
+from app.experiments.catalogue import Catalogue
 from app.experiments.direct import Direct
 from app.experiments.following import Following
 from app.experiments.housekeeping import Housekeeping, Pruned
@@ -55,6 +56,7 @@ class Service:
             store, blobs, executor, self._pictures, self._following, queue_limit=settings.queue_limit
         )
         self._intake = SampleIntake(store, blobs, settings)
+        self.catalogue = Catalogue(store, executor, self._intake, settings)
         keep, longest = timedelta(hours=settings.sample_keep_hours), timedelta(hours=1, seconds=settings.time_limit)
         self._housekeeping = Housekeeping(store, blobs, cache, sample_keep=keep, longest_run=longest)
         self._direct = Direct(
@@ -72,7 +74,7 @@ class Service:
             self._executor.submit(experiment_id)
         self._intake.open()
         self._executor.start(self._ended)
-        for work in (partial(self._intake.add_bundled, self._closing), partial(self._housekeeping.keep, self._closing)):
+        for work in (partial(self.catalogue.keep, self._closing), partial(self._housekeeping.keep, self._closing)):
             thread = threading.Thread(target=work, daemon=True)
             thread.start()
             self._background.append(thread)

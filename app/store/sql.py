@@ -90,12 +90,17 @@ class SqlStore:
     def add(self, experiment: Experiment) -> None:
         try:
             with writing(self._engine) as connection:
-                connection.execute(experiments.insert().values(row_of_experiment(experiment)))
-                connection.execute(inputs.insert(), input_rows(experiment))
+                self._insert(connection, experiment)
         except IntegrityError:
             for item in experiment.inputs:
                 self.sample(item.sample)
             raise ConflictError("An experiment with this identifier exists already: send it again.") from None
+
+    def replace(self, experiment: Experiment) -> None:
+        with writing(self._engine) as connection:
+            for table in (experiments, deleted):
+                connection.execute(table.delete().where(table.c.id == experiment.id))
+            self._insert(connection, experiment)
 
     def get(self, experiment_id: str) -> Experiment:
         experiment_id = _text(experiment_id)
@@ -226,6 +231,10 @@ class SqlStore:
         return {status.value: found.get(status.value, 0) for status in Status}
 
     # shared parts
+
+    def _insert(self, connection: Connection, experiment: Experiment) -> None:
+        connection.execute(experiments.insert().values(row_of_experiment(experiment)))
+        connection.execute(inputs.insert(), input_rows(experiment))
 
     def _ids(self, query: sa.Select[tuple[str]]) -> list[str]:
         with self._engine.begin() as connection:

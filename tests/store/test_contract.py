@@ -67,6 +67,19 @@ def test_gives_experiments_back_as_they_were(store: SqlStore, sample: Sample) ->
     assert store.get(experiment.id) == experiment
 
 
+def test_replaces_an_experiment_its_outputs_and_its_tombstone(store: SqlStore, sample: Sample) -> None:
+    made = succeeded(store, sample)
+    anew = an_experiment(sample, id=made.id, method="adsn")
+    store.replace(anew)
+    assert store.get(made.id) == anew
+    store.delete(made.id)
+    store.replace(anew)
+    assert store.get(made.id) == anew
+    other = an_experiment(sample)
+    store.replace(other)
+    assert store.get(other.id) == other
+
+
 def test_survives_reopening(store: SqlStore, sample: Sample, open_store: Callable[[], SqlStore]) -> None:
     experiment = succeeded(store, sample)
     assert open_store().get(experiment.id) == experiment

@@ -1,0 +1,156 @@
+"""The program's own experiments: those that its pages show. Made once, kept for good, found again by what they are."""
+
+import logging
+import threading
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from app.errors import AppError, DeletedError, NotFoundError
+from app.experiments.intake import SampleIntake
+from app.experiments.model import Experiment, Status
+from app.experiments.ports import Executor, ExperimentStore
+from app.experiments.submission import NewExperiment, NewInput, prepare
+from app.gallery.exhibits import exhibits
+from app.gallery.identity import identifier
+from app.images.crop import Rectangle
+from app.methods.explanation import Exhibit
+from app.settings import Settings
+
+log = logging.getLogger(__name__)
+
+OWNER = "catalogue"  # no token has such a digest, so nobody but the operator may delete them
+UNMADE = {Status.FAILED, Status.CANCELLED}
+POLL_SECONDS = 0.1
+
+
+@dataclass(frozen=True)
+class Filled:
+    """How many exhibits were made, how many could not be, and how many were there already."""
+
+    made: int
+    failed: int
+    kept: int
+
+
+Told = Callable[[int, int, Exhibit, str | None], None]
+"""``told(number, of, exhibit, error)``: one more is done, the last of ``of`` at ``number == of``"""
+
+
+def _silent(number: int, of: int, exhibit: Exhibit, error: str | None) -> None:
+    pass
+
+
+class Catalogue:
+    """Makes exhibits and finds them.
+
+    Parameters
+    ----------
+    store, executor, intake
+        Those of the service.
+    settings : Settings
+        ``catalogue`` says whether what is missing is made in the background.
+    """
+
+    def __init__(self, store: ExperimentStore, executor: Executor, intake: SampleIntake, settings: Settings) -> None:
+        self._store = store
+        self._executor = executor
+        self._intake = intake
+        self._settings = settings
+        self._samples_are_in = threading.Event()
+
+    def keep(self, closing: threading.Event) -> None:
+        """Bring the bundled samples in and then, where the settings want it, make what is missing, one at a time."""
+        self._intake.add_bundled(closing)
+        self._samples_are_in.set()
+        if self._settings.catalogue:
+            try:
+                self.fill(closing)
+            except Exception:
+                log.exception("the catalogue could not be made; the next start tries again")
+
+    def fill(self, closing: threading.Event, *, again: bool = False, at_once: int = 1, told: Told = _silent) -> Filled:
+        """Make what is missing or failed; nothing is handed to the engine while something waits there.
+
+        Parameters
+        ----------
+        closing : threading.Event
+            Ends it early.
+        again : bool
+            Also make anew what is there, and what the operator deleted.
+        at_once : int
+            How many the engine may have at a time.
+        told : callable
+            Called after each.
+        """
+        while not self._samples_are_in.wait(POLL_SECONDS):
+            if closing.is_set():
+                return Filled(0, 0, 0)
+        declared = exhibits()
+        wanted = [name for name in declared if again or self._is_wanted(name)]
+        waiting, begun, number, failed = deque(wanted), set[str](), 0, 0
+        while waiting or begun:
+            if waiting and len(begun) < at_once and self._executor.waiting == 0:
+                name = waiting.popleft()
+                self._begin(declared[name])
+                begun.add(name)
+            elif closing.wait(POLL_SECONDS):
+                break
+            for name in [name for name in begun if self._executor.snapshot(name) is None]:
+                begun.remove(name)
+                number += 1
+                error = self._error_of(name)
+                failed += error is not None
+                told(number, len(wanted), declared[name], error)
+        return Filled(number - failed, failed, len(declared) - len(wanted))
+
+    def find(self, exhibit: Exhibit) -> Experiment | None:
+        """The experiment of an exhibit, in whatever state; None if it was not begun, or deleted by the operator."""
+        try:
+            return self._store.get(identifier(exhibit))
+        except (NotFoundError, DeletedError):
+            return None
+
+    def prepared(self, exhibit: Exhibit) -> Experiment:
+        """The experiment that an exhibit asks for, not begun.
+
+        Raises
+        ------
+        InvalidInputError
+            If it is declared wrongly.
+        NotFoundError
+            If one of its samples is not here.
+        """
+        inputs = tuple(NewInput(sample, Rectangle.parse(crop)) for sample, crop in exhibit.inputs)
+        experiment = prepare(
+            NewExperiment(exhibit.method, inputs, exhibit.parameters, listed=False),
+            OWNER,
+            sample=self._store.sample,
+            transparent=self._intake.transparent,
+            max_output_pixels=self._settings.max_output_pixels,
+        )
+        return replace(experiment, id=identifier(exhibit))
+
+    def _is_wanted(self, name: str) -> bool:
+        try:
+            return self._store.get(name).status in UNMADE
+        except NotFoundError:
+            return True
+        except DeletedError:
+            return False
+
+    def _begin(self, exhibit: Exhibit) -> None:
+        try:
+            experiment = self.prepared(exhibit)
+            self._store.replace(experiment)
+        except AppError as error:
+            log.error("an exhibit of %s cannot be made: %s", exhibit.method, error.message)
+        else:
+            self._executor.submit(experiment.id)
+
+    def _error_of(self, name: str) -> str | None:
+        try:
+            experiment = self._store.get(name)
+        except (NotFoundError, DeletedError):
+            return "It could not be begun; the log says why."
+        return experiment.error or "It was cancelled." if experiment.status in UNMADE else None

@@ -1,0 +1,144 @@
+"""Figures of the literature as experiments, on photographs of our own, and what to see on them."""
+
+from dataclasses import dataclass
+
+from app.methods.explanation import Exhibit, Figure, Reference
+from app.methods.references import RANDOM_PHASE_TEXTURES
+
+GRAVEL = (("gravel_gray", "96,96,256,256"),)
+GRANITE = (("rockface_pink", "190,60,256,256"),)
+SINUSOIDS = (("two_sinusoids", "0,0,256,256"),)
+PLASTER = (("lit_plaster", "0,0,256,256"),)
+TOWEL = (("towel_white", "96,96,256,256"),)
+TEXTURE = ("texture",)
+
+
+@dataclass(frozen=True)
+class LiteratureFigure:
+    """A figure of an article made anew; ``name`` is its anchor, ``number`` the article's."""
+
+    name: str
+    number: int
+    figure: Figure
+    article: Reference = RANDOM_PHASE_TEXTURES
+
+
+FIGURES = (
+    LiteratureFigure(
+        "orders",
+        4,
+        Figure(
+            "Discrete spot noise of growing order",
+            "A disc is thrown $n$ times at random. With ten one counts them; with a hundred thousand there is a texture, "
+            "which cannot be told from the limit, the ADSN, on the right.",
+            (
+                Exhibit(
+                    "dsn",
+                    GRAVEL,
+                    {"spot": "disc", "radius": 8, "convergence": True, "seed": 1},
+                    ("dsn-10", "dsn-100", "dsn-1000", "dsn-10000", "dsn-100000", "adsn"),
+                ),
+            ),
+        ),
+    ),
+    LiteratureFigure(
+        "sinusoids",
+        6,
+        Figure(
+            "RPN and ADSN differ on two sinusoids",
+            "With two frequencies alone a random phase does no more than shift the drawing. ADSN multiplies both by "
+            "Rayleigh numbers besides, and may favour one of them: compare the three seeds. On a photograph, with "
+            "thousands of frequencies, one does not see that.",
+            (
+                Exhibit("rpn", SINUSOIDS, {"seed": 1}, ("crop", "texture"), "sample and RPN"),
+                *(Exhibit("adsn", SINUSOIDS, {"seed": seed}, TEXTURE, f"ADSN, seed {seed}") for seed in (1, 2, 3)),
+            ),
+        ),
+    ),
+    LiteratureFigure(
+        "wrong-rpn",
+        7,
+        Figure(
+            "The wrong RPN: one phase for all colours",
+            "Added to the phases of the channels, the same random phase keeps their differences, and so the colours. "
+            "Put in their place it makes all channels oscillate together: colours appear that the photograph does not "
+            "have, and those that it has are gone.",
+            tuple(
+                Exhibit("rpn", ((sample, crop),), {"seed": 1, "phase": phase}, show, label)
+                for sample, crop in (("leaves_forest_floor", "256,256,256,256"), ("lichen_rock_gray", "190,40,256,256"))
+                for phase, show, label in (
+                    ("add", ("crop", "texture"), "sample and RPN"),
+                    ("replace", TEXTURE, "wrong RPN"),
+                )
+            ),
+        ),
+    ),
+    LiteratureFigure(
+        "extension",
+        10,
+        Figure(
+            "From a spot to any size",
+            "The crop, the extended spot (its periodic component pasted into a larger image under the window of the "
+            "article, $\\alpha = 0.2$), and the RPN of that spot. Beside it the RPN at the crop's own size: the grain "
+            "is the same.",
+            (
+                Exhibit(
+                    "rpn",
+                    GRANITE,
+                    {"width": 512, "height": 512, "alpha": 0.2, "window": "gaussian", "seed": 1},
+                    ("crop", "spot", "texture"),
+                    "sample, extended spot, RPN",
+                ),
+                Exhibit("rpn", GRANITE, {"seed": 1}, TEXTURE, "RPN, not extended"),
+            ),
+        ),
+    ),
+    LiteratureFigure(
+        "same-phase",
+        11,
+        Figure(
+            "RPN and ADSN at one phase",
+            "Every row has one random phase. Their moduli differ by a factor that is random at every frequency, but one "
+            "has to look for the difference: the two models are one class of texture to the eye.",
+            tuple(
+                Exhibit(method, ((sample, crop),), {"seed": 1}, show, label)
+                for sample, crop in (
+                    ("rockface_pink", "190,60,256,256"),
+                    ("towel_red", "96,96,256,256"),
+                    ("concrete_img_0572", "128,64,256,256"),
+                )
+                for method, show, label in (("rpn", ("crop", "texture"), "sample and RPN"), ("adsn", TEXTURE, "ADSN"))
+            ),
+        ),
+    ),
+    LiteratureFigure(
+        "nine-draws",
+        15,
+        Figure(
+            "Nine draws of one sample",
+            "Nine seeds. No two agree anywhere, and all are the same stone: whoever needs a texture may take the first "
+            "one, without looking.",
+            (
+                Exhibit("rpn", GRANITE, {"seed": 1}, ("crop", "texture"), "sample and seed 1"),
+                *(Exhibit("rpn", GRANITE, {"seed": seed}, TEXTURE, f"seed {seed}") for seed in range(2, 10)),
+            ),
+        ),
+    ),
+    LiteratureFigure(
+        "rayleigh",
+        16,
+        Figure(
+            "Who bears a Rayleigh noise on the modulus",
+            "Each photograph, and the same with its Fourier modulus multiplied by white Rayleigh noise, its phase kept. "
+            "A haze of stripes covers the scene and the paving; the granite bears it.",
+            tuple(
+                Exhibit("rayleigh", ((sample, crop),), {"seed": 1})
+                for sample, crop in (
+                    ("scene_china", "0,0,512,384"),
+                    ("crazy_paving001", "80,80,256,256"),
+                    ("rockface_pink", "190,60,256,256"),
+                )
+            ),
+        ),
+    ),
+)
