@@ -4,7 +4,6 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Literal
 
 import numpy as np
-import scipy.fft
 from numpy.typing import NDArray
 from pydantic import Field as Option
 
@@ -15,6 +14,7 @@ from app.methods.options import ADVANCED, SpotParams
 from app.methods.pictures import log_modulus, refuse_infinite
 from app.synthesis.field import Field, Noise, row_blocks
 from app.synthesis.levels import Extent, Levels
+from app.synthesis.modulus_phase import power
 from app.synthesis.periodic import smooth_planes
 from app.synthesis.spot import centre, make_spot
 from app.synthesis.team import Team
@@ -94,7 +94,8 @@ class _Run:
         smooth += mean.astype(np.float32)[:, None, None]
         yield self._picture("smooth", "Smooth component, the mean added", smooth, 0.86)
         del smooth
-        power = self._power(p)  # before the spot, which takes p's place
+        self._context.progress("input-spectrum", 0.86)
+        squares = power(p, self._context.threads)  # before the spot, which takes p's place
         if p.shape[1:] == (self._height, self._width):
             yield self._picture("spot", "Spot", p, 0.88)
         else:
@@ -102,9 +103,9 @@ class _Run:
             yield self._write("spot", "Extended spot", self._height, self._width, spot.rows, 0.88)
             del spot
         del p
-        yield log_modulus("input-spectrum", "Log-modulus of the periodic component", power, h.shape[1], self._context)
-        power = self._field({"spot": 0.92, "output-spectrum": 0.99}, 0.9, "output-spectrum").power()
-        yield log_modulus("output-spectrum", "Log-modulus of the texture", power, self._width, self._context)
+        yield log_modulus("input-spectrum", "Log-modulus of the periodic component", squares, h.shape[1], self._context)
+        squares = self._field({"spot": 0.92, "output-spectrum": 0.99}, 0.9, "output-spectrum").power()
+        yield log_modulus("output-spectrum", "Log-modulus of the texture", squares, self._width, self._context)
         self._context.progress("output-spectrum", 1.0)
 
     def _texture(self, field: Field) -> Picture:
@@ -128,16 +129,6 @@ class _Run:
             self._context.progress(said or stage, begins[stage] + part * (ends[stage] - begins[stage]))
 
         return Field(self._source.pixels, self._noise, self._team, progress)
-
-    def _power(self, planes: NDArray[np.float32]) -> NDArray[np.float32]:
-        """Squared modulus of planes on the half spectrum, the mean over the channels."""
-        self._context.progress("input-spectrum", 0.86)
-        power = np.zeros((planes.shape[1], planes.shape[2] // 2 + 1), np.float32)
-        for plane in planes:
-            spectrum = scipy.fft.rfft2(plane, workers=self._context.threads)
-            power += spectrum.real**2 + spectrum.imag**2
-        power /= len(planes)
-        return power
 
     def _picture(self, name: str, title: str, values: NDArray[np.float32], end: float) -> Picture:
         height, width = values.shape[1:]

@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-import scipy.fft
 
 from app.errors import InvalidInputError
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
@@ -12,6 +11,7 @@ from app.methods.pictures import Real, crops, encode, log_modulus, refuse_infini
 from app.methods.random_phase import INPUTS
 from app.methods.references import PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
 from app.synthesis.field import Noise, synthesize
+from app.synthesis.modulus_phase import power
 from app.synthesis.periodic import periodic_component
 from app.synthesis.rayleigh import rayleigh
 from app.synthesis.spot import centre
@@ -54,7 +54,7 @@ def run(sources: Sequence[Source], params: StillParams, context: Context) -> Ite
         ("output-spectrum", "Log-modulus with Rayleigh noise", z, 0.95),
     ):
         context.progress(name, done)
-        yield log_modulus(name, title, _power(image, context.threads), width, context)
+        yield log_modulus(name, title, power(image.transpose(2, 0, 1), context.threads), width, context)
     context.progress("output-spectrum", 1.0)
 
 
@@ -69,13 +69,6 @@ def _correlation(p: Real, z: Real) -> float:
     p, z = p - p.mean((0, 1)), z - z.mean((0, 1))
     scale = float(np.sqrt(np.square(p).mean(dtype=np.float64) * np.square(z).mean(dtype=np.float64)))
     return float(np.multiply(p, z).mean(dtype=np.float64)) / scale if scale else 1.0
-
-
-def _power(image: Real, threads: int) -> Real:
-    """Squared modulus on the half spectrum, the mean over the channels."""
-    planes = np.moveaxis(image - image.mean((0, 1)), 2, 0)
-    power: Real = np.square(np.abs(scipy.fft.rfft2(planes, workers=threads))).mean(axis=0)
-    return power
 
 
 EXPLANATION = Explanation(

@@ -104,3 +104,11 @@ IPOL_EFROS_LEUNG = Reference(
     "https://doi.org/10.5201/ipol.2013.59",
     pages="223--241",
 )
+OPPENHEIM_LIM = Reference(
+    "A. V. Oppenheim, J. S. Lim",
+    "The Importance of Phase in Signals",
+    "Proceedings of the IEEE 69(5)",
+    1981,
+    "https://doi.org/10.1109/PROC.1981.12022",
+    pages="529--541",
+)
