@@ -93,8 +93,8 @@ EXPLANATION = Explanation(
     ),
     formulas=(
         Formula(
-            r"\hat{t}(\xi) = \lvert \hat{a}(\xi) \rvert \, e^{i \arg \hat{b}(\xi)}, \qquad "
-            r"\hat{o}(\xi) = \lvert \hat{b}(\xi) \rvert \, e^{i \arg \hat{a}(\xi)}",
+            r"\hat{t}(\xi) = \lvert \hat{a}(\xi) \rvert \, e^{i \operatorname{arg} \hat{b}(\xi)}, \qquad "
+            r"\hat{o}(\xi) = \lvert \hat{b}(\xi) \rvert \, e^{i \operatorname{arg} \hat{a}(\xi)}",
             r"$a$ and $b$ are the two crops, $t$ and $o$ the swapped pictures; at the origin the modulus is the mean's "
             r"and the phase its sign.",
         ),
