@@ -1,6 +1,7 @@
 """`heeger-bergen`: pyramid-based texture synthesis."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -15,14 +16,13 @@ from app.methods.pictures import crops, encode, refuse_infinite
 from app.methods.random_phase import INPUTS
 from app.methods.references import HEEGER_BERGEN as ARTICLE
 from app.methods.references import IPOL_HEEGER_BERGEN, PERIODIC_PLUS_SMOOTH, STEERABLE_PYRAMID
-from app.synthesis.heeger_bergen import Channel, Decomposition, Sample, Synthesis
-from app.synthesis.pyramid import Band, SteerablePyramid
+from app.methods.sub_bands import mosaic
+from app.synthesis.heeger_bergen import Decomposition, Sample, Synthesis
+from app.synthesis.pyramid import SteerablePyramid
 from app.synthesis.team import Team
 from app.synthesis.work import Work
 
 VIEW = 512  # pixels of a side of the views of iterations, at most
-CELL = 256  # and of one sub-band's
-GAP = 4  # between the sub-bands
 
 Real = NDArray[np.float32]
 
@@ -107,8 +107,9 @@ def run(sources: Sequence[Source], params: HeegerBergenParams, context: Context)
     decomposition = Decomposition(params.scales, params.orientations, params.edges)
     pyramid = SteerablePyramid(height, width, params.scales, params.orientations)
     ends = {"sample": 0.1, "noise": 0.14}
-    ends |= {_stage(number): 0.14 + 0.74 * number / params.iterations for number in range(1, params.iterations + 1)}
+    ends |= {_stage(number): 0.14 + 0.66 * number / params.iterations for number in range(1, params.iterations + 1)}
     begins = dict(zip(ends, (0.0, *ends.values()), strict=False))
+    begins["sub-bands"], ends["sub-bands"] = 0.96, 1.0
     views = {}
     with Team(context.threads) as team:
         work = Work(team, lambda stage, part: context.between(begins[stage], ends[stage])(stage, part))
@@ -119,28 +120,26 @@ def run(sources: Sequence[Source], params: HeegerBergenParams, context: Context)
             synthesis.iterate(_stage(number))
             if number < params.iterations and number.bit_count() == 1:
                 views[f"iteration-{number}", f"After iteration {number}"] = synthesis.planes(VIEW)
-    texture = synthesis.planes()
-    if params.add_smooth and sample.smooth is not None:
-        texture += sample.smooth
-    context.progress("texture", 0.88)
-    yield encode("texture", "Texture", _pixels(texture), source.peak, context, kind="texture")
-    del texture
-    context.progress("crop", 0.92)
-    yield from crops(sources, context)
-    context.progress("iterations", 0.94)
-    for (name, title), planes in views.items():
-        yield encode(name, title, _pixels(planes), source.peak, context)
-    context.progress("sub-bands", 0.96)
-    bands = Channel(sample.channels[0], decomposition)
-    title = "Sub-bands of the crop's first principal component"
-    yield encode("crop-bands", title, _mosaic(bands, pyramid), 1, context, facts=_shares(sample))
-    context.progress("sub-bands", 0.98)
-    bands = Channel(synthesis.channels[0], Decomposition(params.scales, params.orientations))
-    title = "Sub-bands of the texture's first principal component"
-    distance = 100 * float(np.mean(list(synthesis.distances().values())))
-    fact = Fact("distance", "Distance of the sub-bands' histograms, on average", distance, "% of their deviation")
-    yield encode("texture-bands", title, _mosaic(bands, pyramid), 1, context, facts=(fact,))
-    context.progress("sub-bands", 1.0)
+        texture = synthesis.planes()
+        if params.add_smooth and sample.smooth is not None:
+            texture += sample.smooth
+        context.progress("texture", 0.8)
+        yield encode("texture", "Texture", _pixels(texture), source.peak, context, kind="texture")
+        del texture
+        context.progress("crop", 0.84)
+        yield from crops(sources, context)
+        context.progress("iterations", 0.86)
+        for (name, title), planes in views.items():
+            yield encode(name, title, _pixels(planes), source.peak, context)
+        picture = mosaic(sample.channels[0], decomposition, context.between(0.88, 0.92))
+        title = "Sub-bands of the crop's first principal component"
+        yield encode("crop-bands", title, picture, 1, context, facts=_shares(sample))
+        picture = mosaic(synthesis.channel(0), replace(decomposition, edges="periodic"), context.between(0.92, 0.96))
+        title = "Sub-bands of the texture's first principal component"
+        distances = synthesis.distances("sub-bands")
+        distance = 100 * sum(distances.values()) / len(distances)
+        fact = Fact("distance", "Distance of the sub-bands' histograms, on average", distance, "% of their deviation")
+        yield encode("texture-bands", title, picture, 1, context, facts=(fact,))
 
 
 def _stage(iteration: int) -> str:
@@ -161,33 +160,108 @@ def _shares(sample: Sample) -> tuple[Fact, ...]:
     )
 
 
-def _mosaic(channel: Channel, pyramid: SteerablePyramid) -> Real:
-    """The bands' upper left corners: a row for each scale, a column for each orientation, the residuals below.
-
-    Coarse bands are enlarged to the image's scale. Mid-grey is a band's mean, black and white are three deviations
-    from it.
-    """
-    rows = [[Band(scale, number) for number in range(pyramid.orientations)] for scale in range(pyramid.scales)]
-    rows.append([pyramid.bands[0], pyramid.bands[-1]])
-    size = channel.band(pyramid.bands[0]).shape
-    high, wide = (min(side, CELL) + GAP for side in size)
-    mosaic = np.full((len(rows) * high, max(2, pyramid.orientations) * wide), 0.5, np.float32)
-    for row, bands in enumerate(rows):
-        for column, band in enumerate(bands):
-            values = channel.band(band)
-            y, x = (np.arange(min(side, CELL)) * n // side for side, n in zip(size, values.shape, strict=True))
-            cell = (values[np.ix_(y, x)] - values.mean()) / (6 * values.std() or 1) + 0.5
-            mosaic[row * high :, column * wide :][: len(y), : len(x)] = cell
-    return mosaic[:-GAP, :-GAP]
-
+SOIL = (("soil_ground010", "0,0,256,256"),)
+DIRT = (("dirt003", "0,0,256,256"),)
+SAND = (("sand_desert009", "0,0,256,256"),)
+PAVING = (("crazy_paving001", "0,0,256,256"),)
+TOWEL = (("towel_white", "0,0,256,256"),)
 
 EXPLANATION = Explanation(
-    what=("Words.",),
-    formulas=(Formula("x", "x."),),
-    fails=("Words.",),
+    what=(
+        "Two textures look alike, say Heeger and Bergen, if filters that respond to detail of one size and direction, "
+        "as cells of the visual cortex do, respond to both with the same histogram. So noise is made to: a steerable "
+        "pyramid takes it apart into sub-bands, one for each scale and orientation, each sub-band is given the "
+        "histogram that the crop's sub-band has, and the pyramid is put together again.",
+        "That spoils the histogram of the pixels themselves, which is matched next, and that in turn spoils the "
+        "sub-bands a little; hence a few iterations. The last step is the pixels', whose histogram is therefore exact; "
+        "the distance that remains between the sub-bands' histograms is given with their picture, in parts of their "
+        "deviation.",
+        "Colours are taken apart into their principal components, which are not correlated, and each component is "
+        "synthesised by itself. The pyramid and the histograms ask for no particular size: a larger texture takes "
+        "interpolated quantiles of the crop's values.",
+        "In the picture of the sub-bands a row is a scale, the finest first, and a column an orientation; mid-grey is "
+        "the mean, black and white are three deviations from it. The last row has what is finer than all scales and "
+        "what is coarser.",
+    ),
+    formulas=(
+        Formula(
+            r"B_s(r) = \cos\left(\frac{\pi}{2} (\log_2 r + s + 1)\right), \qquad 2^{-s-2} < r < 2^{-s}",
+            r"The window of scale $s = 0, 1, \dots$ over the radial frequency $r$, with $r = 1$ at the Nyquist "
+            r"frequency: two octaves around $2^{-s-1}$.",
+        ),
+        Formula(
+            r"A_b(\theta) = \sqrt{\kappa} \, \cos^{Q-1}\left(\theta - \frac{\pi b}{Q}\right), \qquad "
+            r"\sum_{b=0}^{Q-1} A_b(\theta)^2 = 1",
+            r"That of orientation $b$ among $Q$ over the angle $\theta$; the sum fixes $\kappa$. A sub-band is the "
+            r"image filtered with $B_s A_b$ (times $(-i)^{Q-1}$, which makes it real).",
+        ),
+        Formula(
+            r"H^2 + \sum_{s,b} (B_s A_b)^2 + L^2 = 1",
+            r"With the residuals $H$ and $L$ of the highest and lowest frequencies, filtering every sub-band with its "
+            r"own filter once more and adding up gives the image back exactly.",
+        ),
+        Formula(
+            r"v(x) \leftarrow F_u^{-1}\left(F_v(v(x))\right)",
+            r"Matching the histogram of $v$ to that of $u$, with their distribution functions $F$: the value of a "
+            r"given rank becomes the value of that rank.",
+        ),
+    ),
+    fails=(
+        "Histograms know no places. What is arranged over more than the coarsest filter, or by sub-bands acting "
+        "together, is lost: the joints of a paving become splashes of the right colour, a weave its grain. Efros–Leung "
+        "copies such things.",
+        "Of the Fourier modulus only what the few broad filters see is kept. Long streaks and exact periods, which "
+        "random phase noise keeps, are cut to pieces here: the two models fail on different textures, so try both.",
+        "The principal components are synthesised independently, so a pixel may pair values of them that never meet "
+        "in the crop. Where few colours dominate, that shows as specks of a foreign colour.",
+        "A crop with slow changes of light gives stains. Periodic edges take out the change from one border to the "
+        "other; mirrored edges keep it, and the stains are stronger.",
+    ),
     figures=(
-        Figure("F", "C.", (Exhibit("heeger-bergen", (("gravel_gray", "96,96,256,256"),), {"seed": 1}),)),
-        Figure("G", "C.", (Exhibit("heeger-bergen", (("tiles02", "0,0,256,256"),), {"seed": 1}),)),
+        Figure(
+            "Pebbles stay pebbles",
+            "A few stones on bare ground are rare, large values in the sub-bands, which Heeger–Bergen keeps. Random "
+            "phase noise has no outliers: it spreads them evenly.",
+            (
+                Exhibit("heeger-bergen", SOIL, {"seed": 1}, label="Heeger–Bergen"),
+                Exhibit("rpn", SOIL, {"seed": 1}, show=("texture",), label="RPN"),
+            ),
+        ),
+        Figure(
+            "From noise to texture",
+            "Noise with the crop's colours, the first iteration, which does most of the work, and the fifth.",
+            (Exhibit("heeger-bergen", DIRT, {"seed": 1}, show=("crop", "noise", "iteration-1", "texture")),),
+        ),
+        Figure(
+            "Scales and orientations",
+            "Ripples of sand and their sub-bands. Two scales see no ripples, only grain; one orientation sees them, "
+            "but not their direction; six scales and four orientations see both.",
+            (
+                Exhibit("heeger-bergen", SAND, {"seed": 1}, show=("crop", "crop-bands")),
+                Exhibit("heeger-bergen", SAND, {"seed": 1, "scales": 2}, show=("texture",), label="2 scales"),
+                Exhibit(
+                    "heeger-bergen", SAND, {"seed": 1, "orientations": 1}, show=("texture",), label="1 orientation"
+                ),
+                Exhibit("heeger-bergen", SAND, {"seed": 1, "scales": 6}, show=("texture",), label="6 scales"),
+            ),
+        ),
+        Figure(
+            "The right colours in the wrong places",
+            "The joints of crazy paving keep their colour and their share of the area, unlike in random phase noise, "
+            "but not their network.",
+            (
+                Exhibit("heeger-bergen", PAVING, {"seed": 1}, label="Heeger–Bergen"),
+                Exhibit("rpn", PAVING, {"seed": 1}, show=("texture",), label="RPN"),
+            ),
+        ),
+        Figure(
+            "Order that is longer than the filters",
+            "The rows of a towel run from side to side. Heeger–Bergen breaks them up; random phase noise keeps them.",
+            (
+                Exhibit("heeger-bergen", TOWEL, {"seed": 1}, label="Heeger–Bergen"),
+                Exhibit("rpn", TOWEL, {"seed": 1}, show=("texture",), label="RPN"),
+            ),
+        ),
     ),
 )
 

@@ -89,7 +89,7 @@ class Sample:
         planes = h.transpose(2, 0, 1).astype(np.float32, order="C")
         self.smooth: Real | None = None
         if decomposition.edges == "periodic":
-            self.smooth = smooth_planes(h)
+            self.smooth = smooth_planes(h, work.threads)
             planes -= self.smooth
         self.space = ColourSpace.of(planes)
         self.channels = self.space.forward(planes)
@@ -152,16 +152,15 @@ class Synthesis:
         match(plane, self._sample.pixels[channel], self._work.alive)
         self._planes[channel], self._spectra[channel] = plane, to_spectrum(plane)
 
-    @property
-    def channels(self) -> Real:
-        """The texture's principal components as they are, shape (C, H, W)."""
-        return np.stack(self._planes)
+    def channel(self, number: int) -> Real:
+        """A principal component of the texture as it is."""
+        return self._planes[number]
 
     def planes(self, limit: int | None = None) -> Real:
         """The texture as it is in the sample's colours, shape (C, H, W); of no more than ``limit`` rows and columns."""
         return self._sample.space.back(np.stack([plane[:limit, :limit] for plane in self._planes]))
 
-    def distances(self, channel: int = 0) -> dict[Band, float]:
+    def distances(self, stage: str, channel: int = 0) -> dict[Band, float]:
         """How far a channel's sub-bands are from the sample's histograms.
 
         Returns
@@ -170,12 +169,16 @@ class Synthesis:
             Root mean square difference of the quantiles (the Wasserstein distance), in deviations of the sample's
             band.
         """
-        distances = {}
-        for band in self._pyramid.bands:
+        distances = dict.fromkeys(self._pyramid.bands, 0.0)
+
+        def measure(band: Band) -> None:
+            self._work.alive()
             found = np.sort(self._pyramid.filter(band).analyse(self._spectra[channel]), axis=None)
+            self._work.alive()
             asked = quantiles(self._sample.bands[channel, band], len(found))
-            deviation = float(asked.std()) or 1
-            distances[band] = float(np.sqrt(np.square(found - asked).mean())) / deviation
+            distances[band] = float(np.sqrt(np.square(found - asked).mean())) / (float(asked.std()) or 1)
+
+        self._work.run(stage, measure, self._pyramid.bands)
         return distances
 
 

@@ -14,7 +14,7 @@ class Work:
     """Shares work out over a team; when the progress raises, the pieces that are running stop too."""
 
     def __init__(self, team: Team, progress: Progress) -> None:
-        self._team, self._progress = team, progress
+        self._team, self._progress, self.threads = team, progress, team.threads
         self._stopped = threading.Event()
 
     def alive(self) -> None:
