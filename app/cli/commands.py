@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from app import __version__
-from app.cli.problems import EXIT_CODES, plain_errors
+from app.cli.problems import EXIT_CODES, FAILED, plain_errors
 from app.errors import InvalidInputError
 
 
@@ -112,6 +112,35 @@ def prune(
     typer.echo(f"Removed {pruned.experiments} experiments, {pruned.samples} samples and {pruned.files} files.")
 
 
+def catalogue(
+    again: Annotated[
+        bool, typer.Option("--again", help="Make all anew, also what is there and what the operator deleted.")
+    ] = False,
+) -> None:
+    """Make the figures of the pages that are missing. The service may run meanwhile; it makes them by itself, too."""
+    from threading import Event
+
+    from app.cli.settings import read_settings
+    from app.main import build_service
+    from app.methods.explanation import Exhibit
+
+    def told(number: int, of: int, exhibit: Exhibit, error: str | None) -> None:
+        samples = " and ".join(sample for sample, _ in exhibit.inputs)
+        typer.echo(f"{number}/{of} {exhibit.method} of {samples}{f': {error}' if error else ''}", err=True)
+
+    with plain_errors():
+        settings = read_settings().model_copy(update={"catalogue": False})  # it is made here, not in the background
+        service = build_service(settings)
+        try:
+            service.start()
+            filled = service.catalogue.fill(Event(), again=again, at_once=settings.workers, told=told)
+        finally:
+            service.close()
+    typer.echo(f"Made {filled.made} figures, {filled.failed} failed, {filled.kept} were there already.")
+    if filled.failed:
+        raise typer.Exit(FAILED)
+
+
 def duration(text: str) -> timedelta:
     """Read an age.
 
@@ -153,6 +182,7 @@ def application(*, with_method_options: bool) -> typer.Typer:
         synthesize
     )
     app.command(epilog=EXIT_CODES)(methods)
+    app.command(epilog=EXIT_CODES)(catalogue)
     app.command(epilog=EXIT_CODES)(prune)
     return app
 
