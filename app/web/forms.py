@@ -54,5 +54,15 @@ def parse(method: Method, submitted: Mapping[str, str]) -> Parsed:
     try:
         return Parsed(parameters=method.params.model_validate(given).model_dump(mode="json", exclude_unset=True))
     except ValidationError as error:
-        at_fault = {str(problem["loc"][0]) for problem in error.errors() if problem["loc"]}
-        return Parsed(errors={form_name(method, e.name): requirement(e) for e in declared if e.name in at_fault})
+        problems = {str(problem["loc"][0]): problem["msg"] for problem in error.errors() if problem["loc"]}
+        return Parsed(
+            errors={form_name(method, e.name): _words(e, problems[e.name]) for e in declared if e.name in problems}
+        )
+
+
+def _words(entry: FormField, problem: str) -> str:
+    """Say what a field takes; of a text only its own validator knows."""
+    if entry.kind != "text":
+        return requirement(entry)
+    reason = problem.removeprefix("Value error, ").rstrip(".")
+    return f"{entry.label}: {reason[:1].lower()}{reason[1:]}."

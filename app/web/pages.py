@@ -5,17 +5,14 @@ from urllib.parse import urlencode
 from fastapi import APIRouter, Request
 from fastapi.responses import RedirectResponse
 from starlette.concurrency import run_in_threadpool
-from starlette.datastructures import FormData
 from starlette.responses import Response
 
 from app.errors import AppError, InvalidInputError
 from app.experiments.model import Sample
 from app.experiments.ownership import new_token
 from app.experiments.service import Service
-from app.methods.fields import fields
-from app.methods.model import Method, StillParams
 from app.methods.registry import METHODS, method
-from app.samples import BundledSample, bundled
+from app.samples import bundled
 from app.settings import Settings
 from app.web import experiment_pages
 from app.web.deps import (
@@ -25,9 +22,10 @@ from app.web.deps import (
     in_upload_thread,
     remember_owner,
 )
-from app.web.drafts import SIZES, Draft, opened, refused, sent
-from app.web.forms import form_name, own_fields
+from app.web.drafts import Draft, opened, refused, sent, typed
+from app.web.inputs import Choices, further, prefix
 from app.web.problems import status_of
+from app.web.sample_form import form_context
 from app.web.templating import render
 from app.web.uploads import receive_form
 
@@ -95,33 +93,23 @@ async def upload(request: Request, service: ServiceDep, settings: SettingsDep, t
 @router.get("/samples/{sample_id}")
 def sample_page(request: Request, sample_id: str, service: ServiceDep, settings: SettingsDep) -> Response:
     sample = service.sample(sample_id)
-    entry = _bundled(settings, sample)
-    return _sample(request, sample, opened(sample, entry.crop if entry else None, request.query_params), entry)
+    choices = _choices(service, settings)
+    return _sample(request, settings, sample, choices, opened(sample, choices, request.query_params))
 
 
-def _bundled(settings: Settings, sample: Sample) -> BundledSample | None:
-    entries = bundled(settings.samples_dir) if sample.bundled else []
-    return next((entry for entry in entries if entry.id == sample.id), None)
+def _choices(service: Service, settings: Settings) -> Choices:
+    offered = tuple(service.bundled_samples())
+    kept = {sample.id for sample in offered}  # an upload may have any id, and says nothing of the catalogue
+    entries = {entry.id: entry for entry in bundled(settings.samples_dir) if entry.id in kept}
+    return Choices(offered, entries, service.sample)
 
 
-def _sample(request: Request, sample: Sample, draft: Draft, entry: BundledSample | None, status: int = 200) -> Response:
-    own = {name: own_fields(declared) for name, declared in METHODS.items()}
-
-    def stands_out(declared: Method) -> bool:
-        names = [(form_name(declared, field.name), field) for field in own[declared.name] if field.advanced]
-        return any(name in draft.errors or draft.values.get(name, "") != field.default for name, field in names)
-
-    context = {
-        "sample": sample,
-        "bundled": entry,
-        "draft": draft,
-        "methods": METHODS.values(),
-        "own": own,
-        "opened": {name: stands_out(declared) for name, declared in METHODS.items()},
-        "shared": fields(StillParams),
-        "sizes": SIZES,
+def _sample(
+    request: Request, settings: Settings, sample: Sample, choices: Choices, draft: Draft, status: int = 200
+) -> Response:
+    context = form_context(sample, choices, draft) | {
+        "limit": settings.max_upload_bytes,
         "summary_title": WORDS[503] if status == 503 else "Please look at this again",
-        "targets": {"crop": "crop-x", "method": f"method-{next(iter(METHODS))}"},
     }
     return render(request, "sample.html", context, status)
 
@@ -134,30 +122,48 @@ def experiments() -> Response:
 
 @router.post("/experiments")
 async def submit(request: Request, service: ServiceDep, settings: SettingsDep, token: TokenDep) -> Response:
-    values = _texts(await request.form())
-    return await run_in_threadpool(_submit, request, service, settings, token, values)
+    """Take the form of a sample's page: run it, or show the samples that were chosen in it."""
+    owner = token or new_token()
+    names = {f"{prefix(number)}file": f"{prefix(number)}sample" for number in further()}
+    if not request.headers.get("content-type", "").startswith("multipart/form-data"):
+        values = {name: value for name, value in (await request.form()).items() if isinstance(value, str)}
+        return await run_in_threadpool(_submit, request, service, settings, owner, values, {})
+    async with receive_form(request, tuple(names)) as form:
+        values, errors = dict(form.fields), {}
+        for name, path in form.files.items():
+            try:
+                values[names[name]] = (await in_upload_thread(request, service.add_sample, path, owner)).id
+            except AppError as error:
+                errors[names[name]] = error.message
+        return await run_in_threadpool(_submit, request, service, settings, owner, values, errors)
 
 
 def _submit(
-    request: Request, service: Service, settings: Settings, token: str | None, values: dict[str, str]
+    request: Request,
+    service: Service,
+    settings: Settings,
+    owner: str,
+    values: dict[str, str],
+    errors: dict[str, str],
 ) -> Response:
     sample = service.sample(values.get("sample", ""))
-    read = sent(sample, values, listed=not values.get("unlisted"))
+    choices = _choices(service, settings)
+    if errors:
+        return _sample(request, settings, sample, choices, Draft(values, errors), 422)
+    if values.get("show"):
+        query = urlencode(typed(values), safe=",:")
+        return RedirectResponse(f"/samples/{sample.id}?{query}", SEE_OTHER)
+    read = sent(sample, choices, values, listed=not values.get("unlisted"))
     if read.request is None:
-        return _sample(request, sample, read.draft, _bundled(settings, sample), 422)
-    owner = token or new_token()
+        return _sample(request, settings, sample, choices, read.draft, 422)
     try:
         experiment = service.submit(read.request, owner)
     except AppError as error:
-        draft = refused(read.draft, method(read.request.method), error)
-        return _sample(request, sample, draft, _bundled(settings, sample), status_of(error))
+        draft = refused(read, method(read.request.method), error)
+        return _sample(request, settings, sample, choices, draft, status_of(error))
     response = RedirectResponse(f"/experiments/{experiment.id}", SEE_OTHER)
     remember_owner(request, response, owner)
     return response
-
-
-def _texts(form: FormData) -> dict[str, str]:
-    return {name: value for name, value in form.items() if isinstance(value, str)}
 
 
 @router.get("/archive")

@@ -1,19 +1,14 @@
-// The crop on the photograph. The four numeric fields are the truth: the box shows them, and dragging writes to them.
+// The crop on a photograph. The four numeric fields are the truth: the box shows them, and dragging writes to them.
 // Every change is told to the form as a "crop" event.
 
 import { fitted, moved, resized, spanned } from "./rectangle.js";
 
-const SIDES = ["x", "y", "width", "height"];
+export const SIDES = ["x", "y", "width", "height"];
 const EDGES = ["nw", "n", "ne", "e", "se", "s", "sw", "w"];
 const LARGEST = 3; // times that a small photograph is enlarged on the screen
 const SLOP = 4; // screen pixels that a press may slip and still be no drag
-
-const form = document.querySelector("#experiment");
-const frame = document.querySelector("#frame");
-const ground = frame.parentElement;
-const size = { width: Number(frame.dataset.width), height: Number(frame.dataset.height) };
-const inputs = Object.fromEntries(SIDES.map((side) => [side, document.querySelector(`#crop-${side}`)]));
-const readout = document.querySelector("#crop-size");
+const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+const KEYS = "Arrow keys move the crop, with Shift they resize it, with Ctrl ten pixels at a time.";
 
 function element(name, attributes, parent) {
   const made = document.createElement(name);
@@ -22,132 +17,186 @@ function element(name, attributes, parent) {
   return made;
 }
 
-const shade = element("div", { class: "shade", "aria-hidden": "true" }, frame);
-const dark = element("span", {}, shade);
-const keys = "Arrow keys move the crop, with Shift they resize it, with Ctrl ten pixels at a time.";
-const box = element("div", { class: "box", tabindex: "0", role: "application", "aria-label": `Crop. ${keys}` }, frame);
-for (const edge of EDGES) element("span", { class: "handle", "data-edge": edge }, box);
-const label = element("span", { class: "readout", "aria-hidden": "true" }, box);
-
-let scale = 1; // screen pixels per pixel of the original
-let shown = read();
-let drag = null;
-
-function read() {
-  const values = Object.fromEntries(SIDES.map((side) => [side, Math.round(Number(inputs[side].value))]));
-  return SIDES.every((side) => inputs[side].value.trim() !== "" && Number.isFinite(values[side])) ? values : null;
-}
-
-function layOut() {
-  const style = getComputedStyle(ground);
-  const room = ground.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
-  const narrow = window.matchMedia("(max-width: 960px)").matches;
-  const tall = Math.max(200, narrow ? window.innerHeight * 0.6 : window.innerHeight - 180);
-  scale = Math.min(room / size.width, tall / size.height, LARGEST);
-  frame.style.width = `${size.width * scale}px`;
-  frame.style.height = `${size.height * scale}px`;
-  frame.classList.add("ready");
-  draw();
-}
-
-function draw() {
-  const crop = fitted(shown, "width", size);
-  const [left, top, width, height] = SIDES.map((side) => crop[side] * scale);
-  Object.assign(box.style, { left: `${left}px`, top: `${top}px`, width: `${width}px`, height: `${height}px` });
-  const hole = [[left, top], [left, top + height], [left + width, top + height], [left + width, top], [left, top]];
-  const outer = [[0, 0], [size.width * scale, 0], [size.width * scale, size.height * scale], [0, size.height * scale], [0, 0]];
-  dark.style.clipPath = `polygon(evenodd, ${[...outer, ...hole].map(([x, y]) => `${x}px ${y}px`).join(", ")})`;
-  label.textContent = `${crop.width} × ${crop.height}`;
-  box.classList.toggle("small", width < 120 || height < 64);
-  box.classList.toggle("tiny", width < 88 || height < 88);
-  box.classList.toggle("low", top + height + 52 > size.height * scale);
-  const percent = Math.round(scale * 100);
-  readout.textContent = `${crop.width} × ${crop.height} of ${size.width} × ${size.height}, shown at ${percent} %`;
-}
-
-function write(crop) {
-  shown = crop;
-  for (const side of SIDES) inputs[side].value = crop[side];
-  draw();
-  form.dispatchEvent(new CustomEvent("crop"));
-}
-
-const at = (event) => {
-  const bounds = frame.getBoundingClientRect();
-  return { x: (event.clientX - bounds.left) / scale, y: (event.clientY - bounds.top) / scale };
-};
-
-frame.addEventListener("pointerdown", (event) => {
-  if (event.button !== 0 || drag) return;
-  event.preventDefault();
-  const edge = event.target.dataset?.edge;
-  const everything = shown.width === size.width && shown.height === size.height; // cannot be moved: a drag draws anew
-  const kind = edge ? "resize" : event.target === box && !everything ? "move" : "draw";
-  drag = { kind, edge, id: event.pointerId, from: at(event), screen: [event.clientX, event.clientY], before: shown, under: false };
-  frame.setPointerCapture(event.pointerId);
-  box.focus({ preventScroll: true });
-});
-
-frame.addEventListener("pointermove", (event) => {
-  if (!drag || event.pointerId !== drag.id) return;
-  const slipped = Math.hypot(event.clientX - drag.screen[0], event.clientY - drag.screen[1]);
-  drag.under ||= slipped >= SLOP;
-  if (!drag.under) return;
-  const to = at(event);
-  const [dx, dy] = [to.x - drag.from.x, to.y - drag.from.y];
-  if (drag.kind === "draw") write(spanned(drag.from, to, size));
-  else if (drag.kind === "move") write(moved(drag.before, dx, dy, size));
-  else write(resized(drag.before, drag.edge, dx, dy, size));
-});
-
-const letGo = (event) => {
-  if (drag && event.pointerId === drag.id) drag = null;
-};
-frame.addEventListener("pointerup", letGo);
-frame.addEventListener("pointercancel", letGo);
-
-const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
-box.addEventListener("keydown", (event) => {
-  if (event.key === "Escape" && drag) {
-    const { before } = drag;
-    drag = null;
-    write(before);
+/** The editor of one input's crop; `root` holds the photograph's frame and the fields. */
+export class Crop {
+  constructor(root) {
+    this.form = root.closest("form");
+    this.frame = root.querySelector(".frame");
+    this.ground = this.frame.parentElement;
+    this.fields = Object.fromEntries(SIDES.map((side) => [side, root.querySelector(`[data-side=${side}]`)]));
+    this.tools = root.querySelector("[id$=crop-tools]");
+    this.readout = root.querySelector("[id$=crop-size]");
+    this.scale = 1; // screen pixels per pixel of the original
+    this.drag = null;
+    this.build(root.dataset.input === "1" ? "Crop" : `Crop of the ${root.querySelector("legend").textContent.toLowerCase()}`);
+    this.listen();
+    this.readSize();
+    this.follow();
+    new ResizeObserver(() => this.layOut()).observe(this.ground);
+    window.addEventListener("resize", () => this.layOut());
   }
-  const arrow = ARROWS[event.key];
-  if (!arrow || event.altKey || event.metaKey) return;
-  event.preventDefault();
-  const [dx, dy] = arrow.map((step) => step * (event.ctrlKey ? 10 : 1));
-  write(event.shiftKey ? resized(shown, "se", dx, dy, size) : moved(shown, dx, dy, size));
-});
 
-for (const side of SIDES) {
-  inputs[side].addEventListener("input", () => {
-    const typed = read();
-    if (!typed) return;
-    shown = fitted(typed, side, size);
-    draw();
-    form.dispatchEvent(new CustomEvent("crop"));
-  });
-  inputs[side].addEventListener("change", () => write(shown));
+  build(name) {
+    const shade = element("div", { class: "shade", "aria-hidden": "true" }, this.frame);
+    this.dark = element("span", {}, shade);
+    const names = { tabindex: "0", role: "application", "aria-label": `${name}. ${KEYS}` };
+    this.box = element("div", { class: "box", ...names }, this.frame);
+    for (const edge of EDGES) element("span", { class: "handle", "data-edge": edge }, this.box);
+    this.label = element("span", { class: "readout", "aria-hidden": "true" }, this.box);
+    this.tools.hidden = false;
+  }
+
+  readSize() {
+    this.size = { width: Number(this.frame.dataset.width), height: Number(this.frame.dataset.height) };
+  }
+
+  get suggested() {
+    const wanted = this.tools.querySelector("button:last-of-type").dataset.crop.split(",").map(Number);
+    return wanted.length === 4 ? wanted : [0, 0, this.size.width, this.size.height];
+  }
+
+  /** Show another photograph, with the crop to start from. */
+  show({ address, title, width, height, crop }) {
+    const image = this.frame.querySelector("img") ?? document.createElement("img");
+    this.frame.prepend(image);
+    Object.assign(image, { src: address, alt: title, width, height });
+    Object.assign(this.frame.dataset, { width, height });
+    this.tools.querySelector("button:last-of-type").dataset.crop = crop;
+    const most = { x: width - 1, y: height - 1, width, height };
+    for (const side of SIDES) this.fields[side].max = most[side];
+    this.readSize();
+    const [x, y, wide, high] = this.suggested;
+    this.shown = { x, y, width: wide, height: high };
+    this.layOut();
+    this.write(this.shown);
+  }
+
+  read() {
+    const values = Object.fromEntries(SIDES.map((side) => [side, Math.round(Number(this.fields[side].value))]));
+    const said = SIDES.every((side) => this.fields[side].value.trim() !== "" && Number.isFinite(values[side]));
+    return said ? values : null;
+  }
+
+  /** Take what the fields say; those left empty take the crop to start from. */
+  follow() {
+    const [x, y, width, height] = this.suggested;
+    const empty = SIDES.every((side) => this.fields[side].value === "");
+    this.shown = fitted(this.read() ?? this.shown ?? { x, y, width, height }, "width", this.size);
+    if (empty && this.size.width) for (const side of SIDES) this.fields[side].value = this.shown[side];
+    this.layOut();
+  }
+
+  layOut() {
+    const style = getComputedStyle(this.ground);
+    const room = this.ground.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
+    if (room <= 0 || !this.size.width) return; // not on the screen
+    const narrow = window.matchMedia("(max-width: 960px)").matches;
+    const tall = Math.max(240, narrow ? window.innerHeight * 0.6 : window.innerHeight - 336);
+    this.scale = Math.min(room / this.size.width, tall / this.size.height, LARGEST);
+    this.frame.style.width = `${this.size.width * this.scale}px`;
+    this.frame.style.height = `${this.size.height * this.scale}px`;
+    this.frame.classList.add("ready");
+    this.draw();
+  }
+
+  draw() {
+    const { scale, size } = this;
+    const crop = fitted(this.shown, "width", size);
+    const [left, top, width, height] = SIDES.map((side) => crop[side] * scale);
+    Object.assign(this.box.style, { left: `${left}px`, top: `${top}px`, width: `${width}px`, height: `${height}px` });
+    const [wide, high] = [size.width * scale, size.height * scale];
+    const hole = [[left, top], [left, top + height], [left + width, top + height], [left + width, top], [left, top]];
+    const outer = [[0, 0], [wide, 0], [wide, high], [0, high], [0, 0]];
+    this.dark.style.clipPath = `polygon(evenodd, ${[...outer, ...hole].map(([x, y]) => `${x}px ${y}px`).join(", ")})`;
+    this.label.textContent = `${crop.width} × ${crop.height}`;
+    this.box.classList.toggle("small", width < 120 || height < 64);
+    this.box.classList.toggle("tiny", width < 88 || height < 88);
+    this.box.classList.toggle("low", top + height + 52 > high);
+    const percent = Math.round(scale * 100);
+    this.readout.textContent = `${crop.width} × ${crop.height} of ${size.width} × ${size.height}, shown at ${percent} %`;
+  }
+
+  write(crop) {
+    this.shown = crop;
+    for (const side of SIDES) this.fields[side].value = crop[side];
+    this.draw();
+    this.form.dispatchEvent(new CustomEvent("crop"));
+  }
+
+  listen() {
+    this.frame.addEventListener("pointerdown", (event) => this.press(event));
+    this.frame.addEventListener("pointermove", (event) => this.pull(event));
+    const letGo = (event) => {
+      if (event.pointerId === this.drag?.id) this.drag = null;
+    };
+    this.frame.addEventListener("pointerup", letGo);
+    this.frame.addEventListener("pointercancel", letGo);
+    this.box.addEventListener("keydown", (event) => this.key(event));
+    for (const side of SIDES) {
+      this.fields[side].addEventListener("input", () => {
+        const typed = this.read();
+        if (!typed) return;
+        this.shown = fitted(typed, side, this.size);
+        this.draw();
+        this.form.dispatchEvent(new CustomEvent("crop"));
+      });
+      this.fields[side].addEventListener("change", () => this.write(this.shown));
+    }
+    this.tools.addEventListener("click", (event) => {
+      const wanted = event.target.dataset.crop;
+      if (!wanted) return;
+      const { width: wide, height: high } = this.size;
+      const [x, y, width, height] = wanted === "all" ? [0, 0, wide, high] : wanted.split(",").map(Number);
+      this.write({ x, y, width, height });
+    });
+    // Browsers put back what was in the fields when one returns to the page; the box follows.
+    window.addEventListener("pageshow", () => {
+      this.follow();
+      this.form.dispatchEvent(new CustomEvent("crop"));
+    });
+  }
+
+  at(event) {
+    const bounds = this.frame.getBoundingClientRect();
+    return { x: (event.clientX - bounds.left) / this.scale, y: (event.clientY - bounds.top) / this.scale };
+  }
+
+  press(event) {
+    if (event.button !== 0 || this.drag) return;
+    event.preventDefault();
+    const { size, shown } = this;
+    const { edge } = event.target.dataset ?? {};
+    const everything = shown.width === size.width && shown.height === size.height; // cannot be moved: a drag draws anew
+    const kind = edge ? "resize" : event.target === this.box && !everything ? "move" : "draw";
+    const screen = [event.clientX, event.clientY];
+    this.drag = { kind, edge, id: event.pointerId, from: this.at(event), screen, before: shown, under: false };
+    this.frame.setPointerCapture(event.pointerId);
+    this.box.focus({ preventScroll: true });
+  }
+
+  pull(event) {
+    const { drag, size } = this;
+    if (event.pointerId !== drag?.id) return;
+    const slipped = Math.hypot(event.clientX - drag.screen[0], event.clientY - drag.screen[1]);
+    drag.under ||= slipped >= SLOP;
+    if (!drag.under) return;
+    const to = this.at(event);
+    const [dx, dy] = [to.x - drag.from.x, to.y - drag.from.y];
+    if (drag.kind === "draw") this.write(spanned(drag.from, to, size));
+    else if (drag.kind === "move") this.write(moved(drag.before, dx, dy, size));
+    else this.write(resized(drag.before, drag.edge, dx, dy, size));
+  }
+
+  key(event) {
+    if (event.key === "Escape" && this.drag) {
+      const { before } = this.drag;
+      this.drag = null;
+      this.write(before);
+    }
+    const arrow = ARROWS[event.key];
+    if (!arrow || event.altKey || event.metaKey) return;
+    event.preventDefault();
+    const [dx, dy] = arrow.map((step) => step * (event.ctrlKey ? 10 : 1));
+    this.write(event.shiftKey ? resized(this.shown, "se", dx, dy, this.size) : moved(this.shown, dx, dy, this.size));
+  }
 }
-
-const tools = document.querySelector("#crop-tools");
-tools.hidden = false;
-tools.addEventListener("click", (event) => {
-  const wanted = event.target.dataset.crop;
-  if (!wanted) return;
-  const [x, y, width, height] = wanted === "all" ? [0, 0, size.width, size.height] : wanted.split(",").map(Number);
-  write({ x, y, width, height });
-});
-
-shown = fitted(shown ?? { x: 0, y: 0, ...size }, "width", size);
-layOut();
-new ResizeObserver(layOut).observe(ground);
-window.addEventListener("resize", layOut);
-
-// Browsers put back what was in the fields when one returns to the page; the box follows.
-window.addEventListener("pageshow", () => {
-  shown = fitted(read() ?? shown, "width", size);
-  draw();
-  form.dispatchEvent(new CustomEvent("crop"));
-});

@@ -4,21 +4,30 @@
 const SEEDS = 1_000_000;
 const form = document.querySelector("#experiment");
 const { size, width, height, seed } = form.elements;
-const crop = Object.fromEntries(["x", "y", "width", "height"].map((side) => [side, form.elements[`crop.${side}`]]));
+const crop = cropOf("");
 const total = document.querySelector("#run-size");
+const ORDINALS = ["first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth"];
 let pending = 0;
 
+function cropOf(prefix) {
+  return Object.fromEntries(["x", "y", "width", "height"].map((side) => [side, form.elements[`${prefix}crop.${side}`]]));
+}
+
 const chosen = () => form.elements.method.value;
+const radio = () => document.querySelector(`#method-${chosen()}`);
+const numbers = (fields) => ["x", "y", "width", "height"].map((side) => fields[side].value).join(",");
 const own = (method) => [...form.elements].filter((entry) => entry.name.startsWith(`${method}.`));
 
 function followCrop() {
+  const follows = "follows" in radio().dataset; // else the service knows how large the texture is to be
   if (size.value !== "free") {
     const factor = Number(size.value);
-    width.value = Math.floor(Number(crop.width.value) * factor + 0.5);
-    height.value = Math.floor(Number(crop.height.value) * factor + 0.5);
+    width.value = follows ? Math.floor(Number(crop.width.value) * factor + 0.5) : "";
+    height.value = follows ? Math.floor(Number(crop.height.value) * factor + 0.5) : "";
   }
-  const [w, h] = [width.value || crop.width.value, height.value || crop.height.value];
-  total.textContent = `${document.querySelector(`[for=method-${chosen()}]`).textContent}, ${w} × ${h} pixels`;
+  const [w, h] = [width.value || (follows && crop.width.value), height.value || (follows && crop.height.value)];
+  const name = document.querySelector(`[for=method-${chosen()}]`).textContent;
+  total.textContent = w && h ? `${name}, ${w} × ${h} pixels` : name;
   clearTimeout(pending);
   pending = setTimeout(keepInAddress, 250);
 }
@@ -26,7 +35,11 @@ function followCrop() {
 function keepInAddress() {
   const query = new URLSearchParams();
   query.set("method", chosen());
-  query.set("crop", ["x", "y", "width", "height"].map((side) => crop[side].value).join(","));
+  query.set("crop", numbers(crop));
+  for (let number = 2; radio().classList.contains(`takes-${number}`); number += 1) {
+    const sample = form.elements[`input-${number}.sample`].value;
+    if (sample) query.set(ORDINALS[number - 1], `${sample}:${numbers(cropOf(`input-${number}.`))}`);
+  }
   if (size.value !== "1") query.set("size", size.value);
   if (size.value === "free") {
     if (width.value) query.set("width", width.value);
@@ -38,7 +51,7 @@ function keepInAddress() {
     if (value !== entry.dataset.default) query.set(entry.name.slice(chosen().length + 1), value);
   }
   const path = `/samples/${encodeURIComponent(form.elements.sample.value)}`;
-  history.replaceState(history.state, "", `${path}?${query.toString().replaceAll("%2C", ",")}`);
+  history.replaceState(history.state, "", `${path}?${query.toString().replaceAll("%2C", ",").replaceAll("%3A", ":")}`);
 }
 
 let before = chosen();

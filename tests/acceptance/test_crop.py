@@ -17,7 +17,7 @@ def box_of(page: Page) -> list[float]:
     """Where the box is, in pixels of the original."""
     return page.evaluate(
         """() => {
-            const frame = document.querySelector("#frame"), scale = frame.clientWidth / frame.dataset.width;
+            const frame = document.querySelector("#frame"), scale = parseFloat(frame.style.width) / frame.dataset.width;
             const box = document.querySelector(".box").style;
             return ["left", "top", "width", "height"].map(side => parseFloat(box[side]) / scale);
         }"""

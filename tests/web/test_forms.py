@@ -1,5 +1,6 @@
 """Forms come from what a method declares, and what is submitted becomes parameters or messages at the fields."""
 
+from dataclasses import replace
 from typing import Literal
 
 import pytest
@@ -22,7 +23,7 @@ class Params(StillParams):
 
 @pytest.fixture
 def method() -> Method:
-    return Method("test", "Test", "Tests.", (), Params, (), lambda sizes, params: None, lambda *given: iter(()))
+    return replace(METHODS["rpn"], name="test", params=Params)
 
 
 def test_every_kind_of_parameter_becomes_a_field() -> None:

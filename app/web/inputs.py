@@ -1,0 +1,165 @@
+"""The inputs in the form of a sample's page: the page's own sample, and for some methods further ones."""
+
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+
+from app.errors import InvalidInputError, NotFoundError
+from app.experiments.model import Experiment, Sample
+from app.experiments.submission import NewInput
+from app.images.crop import Rectangle
+from app.methods.model import Method
+from app.methods.registry import METHODS
+from app.samples import BundledSample
+
+START = 512  # pixels of a side of the first crop, at most
+SIDES = ("x", "y", "width", "height")
+ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
+FOUR_NUMBERS = "A crop is four whole numbers: x, y, width and height in pixels."
+
+
+@dataclass(frozen=True)
+class Choices:
+    """The samples that the form offers as further inputs.
+
+    ``samples`` are in the order in which they are offered; ``entries`` by id is what the catalogue says of bundled
+    ones; ``find`` gives any sample, also one that is not offered, or raises `NotFoundError`.
+    """
+
+    samples: tuple[Sample, ...]
+    entries: Mapping[str, BundledSample]
+    find: Callable[[str], Sample]
+
+    def start(self, sample: Sample) -> Rectangle:
+        """Start with the suggested crop, or with the middle of a photograph, which is rarely one texture as a whole."""
+        if sample.id in self.entries:
+            return self.entries[sample.id].crop
+        width, height = min(sample.width, START), min(sample.height, START)
+        return Rectangle((sample.width - width) // 2, (sample.height - height) // 2, width, height)
+
+    def other(self, sample: Sample, number: int) -> str:
+        """Name the sample that input ``number`` has at first."""
+        others = [entry.id for entry in self.samples if entry.id != sample.id] or [sample.id]
+        return others[(number - 2) % len(others)]
+
+
+def most(method: Method) -> int:
+    """How many inputs a method takes at most."""
+    return len(method.inputs) + method.more
+
+
+def further() -> range:
+    """The numbers of the inputs, from 2 on, that some method takes."""
+    return range(2, max(most(method) for method in METHODS.values()) + 1)
+
+
+def optional(number: int) -> bool:
+    """Whether every method can do without this input."""
+    return all(len(method.inputs) < number for method in METHODS.values())
+
+
+def prefix(number: int) -> str:
+    """What an input's form names begin with: nothing for the first, ``input-2.`` for the second."""
+    return "" if number == 1 else f"input-{number}."
+
+
+def crop_names(number: int) -> tuple[str, ...]:
+    """The form names of the four numbers of an input's crop.
+
+    Examples
+    --------
+    >>> crop_names(2)
+    ('input-2.crop.x', 'input-2.crop.y', 'input-2.crop.width', 'input-2.crop.height')
+    """
+    return tuple(f"{prefix(number)}crop.{side}" for side in SIDES)
+
+
+def opened_inputs(sample: Sample, choices: Choices, query: Mapping[str, str]) -> dict[str, str]:
+    """Fill the inputs' fields as a page's address says: ``crop=x,y,w,h`` and ``second=id:x,y,w,h``.
+
+    What an address has wrong counts as not said.
+    """
+    crop = choices.start(sample)
+    with suppress(InvalidInputError):
+        crop = Rectangle.parse(query["crop"]).within(sample.width, sample.height) if "crop" in query else crop
+    values = dict(zip(crop_names(1), str(crop).split(","), strict=True))
+    for number in further():
+        name, _, said = query.get(ORDINALS[number - 1], "").partition(":")
+        numbers = [""] * 4  # left empty: the crop to start with
+        try:
+            found = choices.find(name)
+            with suppress(InvalidInputError):
+                numbers = str(Rectangle.parse(said).within(found.width, found.height)).split(",")
+        except NotFoundError:
+            name = "" if optional(number) else choices.other(sample, number)
+        values[f"{prefix(number)}sample"] = name
+        values |= dict(zip(crop_names(number), numbers, strict=True))
+    return values
+
+
+def input_query(experiment: Experiment) -> dict[str, str]:
+    """Write an experiment's inputs as the query that opens the form with them; the opposite of `opened_inputs`."""
+    first, *others = experiment.inputs
+    said = {ORDINALS[index]: f"{other.sample}:{other.crop}" for index, other in enumerate(others, 1)}
+    return {"crop": str(first.crop), **said}
+
+
+def typed_query(values: Mapping[str, str], method: Method) -> dict[str, str]:
+    """Write the inputs of a form that is not sent off yet in the same way."""
+    query = {}
+    for number in range(1, most(method) + 1):
+        crop = ",".join(values.get(name, "").strip() for name in crop_names(number))
+        sample = values.get(f"{prefix(number)}sample", "")
+        if number == 1:
+            query["crop"] = crop
+        elif sample:
+            query[ORDINALS[number - 1]] = f"{sample}:{crop}" if crop.strip(",") else sample
+    return query
+
+
+def read_inputs(
+    sample: Sample, method: Method, choices: Choices, values: Mapping[str, str], errors: dict[str, str]
+) -> dict[int, tuple[Sample, NewInput]]:
+    """Read the inputs that a method takes out of a submitted form, by number; what is wrong goes into ``errors``.
+
+    An optional one without a sample is left out; a further one's crop that is left empty is the one to start with.
+    """
+    read = {}
+    for number in range(1, most(method) + 1):
+        found: Sample | None = sample
+        if number > 1:
+            found = _chosen(number, number <= len(method.inputs), choices, values, errors)
+        if found is None:
+            continue
+        numbers = [values.get(name, "").strip() for name in crop_names(number)]
+        empty = number > 1 and not any(numbers)
+        crop = choices.start(found) if empty else _crop(found, numbers, f"{prefix(number)}crop", errors)
+        if crop is not None:
+            read[number] = found, NewInput(found.id, crop)
+    return read
+
+
+def _chosen(
+    number: int, needed: bool, choices: Choices, values: Mapping[str, str], errors: dict[str, str]
+) -> Sample | None:
+    field = f"{prefix(number)}sample"
+    name = values.get(field, "").strip()
+    if not name:
+        if needed:
+            errors[field] = f"Choose the {ORDINALS[number - 1]} sample: this method takes several."
+        return None
+    try:
+        return choices.find(name)
+    except NotFoundError as error:
+        errors[field] = f"{error.message} Choose another one."
+        return None
+
+
+def _crop(sample: Sample, numbers: list[str], field: str, errors: dict[str, str]) -> Rectangle | None:
+    try:
+        return Rectangle(*(int(number) for number in numbers)).within(sample.width, sample.height)
+    except InvalidInputError as error:
+        errors[field] = error.message
+    except ValueError:
+        errors[field] = FOUR_NUMBERS
+    return None

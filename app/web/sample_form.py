@@ -1,0 +1,112 @@
+"""What the template of a sample's page is given: methods with their fields, inputs with what can be chosen for them."""
+
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Any
+
+from app.errors import NotFoundError
+from app.experiments.model import Sample
+from app.images.crop import Rectangle
+from app.methods.fields import FormField, fields
+from app.methods.model import Method, StillParams, first_size
+from app.methods.registry import METHODS
+from app.samples import BundledSample
+from app.web.drafts import SIZES, Draft
+from app.web.forms import form_name, own_fields
+from app.web.inputs import ORDINALS, SIDES, Choices, further, most, optional, prefix
+
+
+@dataclass(frozen=True)
+class Offer:
+    """A sample that can be chosen; ``crop`` is where it starts, ``entry`` what the catalogue says of a bundled one."""
+
+    id: str
+    title: str
+    width: int
+    height: int
+    crop: Rectangle
+    entry: BundledSample | None
+
+
+@dataclass(frozen=True)
+class InputForm:
+    """One input of the form; ``name`` and ``id`` are what its form names and its elements' ids begin with.
+
+    ``shown`` is None for an optional one that is not there.
+    """
+
+    number: int
+    title: str
+    name: str
+    id: str
+    optional: bool
+    offers: tuple[Offer, ...]
+    shown: Offer | None
+
+
+@dataclass(frozen=True)
+class MethodForm:
+    """One method of the form.
+
+    ``takes`` are the numbers of its inputs; ``follows`` says that its texture is as large as the first crop unless
+    asked otherwise; ``open`` that something under "advanced" is not as usual.
+    """
+
+    method: Method
+    plain: tuple[FormField, ...]
+    advanced: tuple[FormField, ...]
+    takes: range
+    follows: bool
+    open: bool
+
+
+def form_context(sample: Sample, choices: Choices, draft: Draft) -> dict[str, Any]:
+    """Give the template all of the form but what belongs to this one request."""
+    inputs = [InputForm(1, "First sample", "", "", False, (), _offer(sample, choices, sample))]
+    inputs += [_further(sample, choices, draft, number) for number in further()]
+    return {
+        "sample": sample,
+        "draft": draft,
+        "inputs": inputs,
+        "sides": SIDES,
+        "methods": [_method(method, draft) for method in METHODS.values()],
+        "shared": fields(StillParams),
+        "sizes": SIZES,
+        "targets": {
+            "method": f"method-{next(iter(METHODS))}",
+            **{f"{entry.name}crop": f"{entry.id}crop-x" for entry in inputs},
+        },
+    }
+
+
+def _offer(entry: Sample, choices: Choices, page: Sample) -> Offer:
+    title = entry.title or ("This photograph" if entry.id == page.id else "Your photograph")
+    return Offer(entry.id, title, entry.width, entry.height, choices.start(entry), choices.entries.get(entry.id))
+
+
+def _further(sample: Sample, choices: Choices, draft: Draft, number: int) -> InputForm:
+    offered = {entry.id: entry for entry in choices.samples}
+    if sample.id not in offered:
+        offered = {sample.id: sample, **offered}
+    chosen = draft.values.get(f"{prefix(number)}sample", "")
+    if chosen and chosen not in offered:
+        with suppress(NotFoundError):  # the message is at the field
+            offered[chosen] = choices.find(chosen)
+    offers = tuple(_offer(entry, choices, sample) for entry in offered.values())
+    shown = next((offer for offer in offers if offer.id == chosen), None)
+    title = f"{ORDINALS[number - 1].capitalize()} sample"
+    return InputForm(number, title, prefix(number), f"input-{number}-", optional(number), offers, shown)
+
+
+def _method(method: Method, draft: Draft) -> MethodForm:
+    own = own_fields(method)
+    advanced = tuple(entry for entry in own if entry.advanced)
+    names = {form_name(method, entry.name): entry.default for entry in advanced}
+    return MethodForm(
+        method,
+        tuple(entry for entry in own if not entry.advanced),
+        advanced,
+        range(1, most(method) + 1),
+        method.size is first_size,
+        any(name in draft.errors or draft.values.get(name, "") != default for name, default in names.items()),
+    )

@@ -1,0 +1,117 @@
+// The photographs of a sample's page: a crop editor on each, and for further ones what is chosen or uploaded.
+
+import { Crop } from "./crop.js";
+
+const SMALL = 256; // pixels of a thumbnail's longer side, as on the home page
+const address = (sample, size) => `/api/v1/samples/${encodeURIComponent(sample)}/image?size=${size}`;
+
+class Further {
+  constructor(root) {
+    this.root = root;
+    this.crop = new Crop(root);
+    this.select = root.querySelector("select");
+    this.status = root.querySelector(".sending");
+    this.shown = this.select.value;
+    root.querySelector("[name=show]").remove();
+    this.offerThumbnails();
+    this.offerUpload(root.querySelector("input[type=file]"), root.querySelector(".upload"));
+    this.select.addEventListener("change", () => this.follow());
+    window.addEventListener("pageshow", () => this.follow(true));
+    // Closed, an optional one is not taken.
+    root.closest("details")?.addEventListener("toggle", ({ target }) => {
+      if (!target.open) this.choose("");
+    });
+  }
+
+  /** Show what is chosen; `kept` says that the crop's numbers are its own already. */
+  follow(kept = false) {
+    const sample = this.select.value;
+    if (sample !== this.shown) {
+      this.shown = sample;
+      const { width, height, crop, ...thanks } = this.select.selectedOptions[0].dataset;
+      this.thank(thanks);
+      for (const part of this.root.querySelectorAll(".ground, .numbers")) part.hidden = !sample;
+      const before = this.crop.read();
+      const shown = { address: address(sample, 2048), width: Number(width), height: Number(height), crop };
+      if (sample) this.crop.show({ ...shown, title: this.root.querySelector("legend").textContent });
+      if (kept && sample && before) this.crop.write(before);
+    }
+    for (const image of this.thumbnails) image.classList.toggle("current", image.dataset.sample === sample);
+  }
+
+  thank({ credit, licence, url }) {
+    const line = this.root.querySelector(".credit");
+    line.hidden = !credit;
+    if (!credit) return;
+    const link = Object.assign(document.createElement("a"), { href: url, rel: "license", textContent: licence });
+    line.replaceChildren(`Photograph: ${credit}, `, link);
+  }
+
+  choose(sample) {
+    if (this.select.value === sample) return;
+    this.select.value = sample;
+    this.select.dispatchEvent(new Event("input", { bubbles: true }));
+    this.select.dispatchEvent(new Event("change", { bubbles: true }));
+  }
+
+  /** The same choice for the pointer; keyboards and screen readers have the select. */
+  offerThumbnails() {
+    this.wall = document.createElement("div");
+    this.wall.className = "thumbnails";
+    this.wall.setAttribute("aria-hidden", "true");
+    this.thumbnails = [];
+    for (const option of this.select.options) if (option.value) this.addThumbnail(option);
+    this.wall.addEventListener("click", ({ target }) => target.dataset.sample && this.choose(target.dataset.sample));
+    this.root.querySelector(".chosen").after(this.wall);
+    this.follow();
+  }
+
+  addThumbnail({ value, textContent }) {
+    const image = document.createElement("img");
+    Object.assign(image, { loading: "lazy", alt: "", title: textContent, src: address(value, SMALL) });
+    image.dataset.sample = value;
+    this.thumbnails.push(image);
+    this.wall.append(image);
+  }
+
+  offerUpload(input, button) {
+    input.closest(".file").hidden = true;
+    button.hidden = false;
+    button.addEventListener("click", () => input.click());
+    input.addEventListener("change", () => input.files.length && this.send(input, button));
+  }
+
+  async send(input, button) {
+    const body = new FormData();
+    body.append("file", input.files[0]);
+    input.value = "";
+    button.disabled = true;
+    this.status.textContent = "Sending …";
+    try {
+      const answer = await fetch("/api/v1/samples", { method: "POST", body });
+      const record = await answer.json();
+      if (!answer.ok) throw new Error(record.detail);
+      this.offer(record);
+      this.status.textContent = "";
+    } catch (error) {
+      const lost = error instanceof TypeError; // fetch says so of a connection that broke
+      this.status.textContent = lost ? "The connection broke: look whether you are online, and try again." : error.message;
+    }
+    button.disabled = false;
+  }
+
+  offer({ id, width, height }) {
+    const option = new Option("Your photograph", id);
+    const [wide, high] = [Math.min(width, 512), Math.min(height, 512)];
+    const crop = [Math.floor((width - wide) / 2), Math.floor((height - high) / 2), wide, high].join(",");
+    Object.assign(option.dataset, { width, height, crop });
+    this.select.add(option);
+    this.addThumbnail(option);
+    this.choose(id);
+  }
+}
+
+for (const root of document.querySelectorAll("[data-input]")) {
+  if (root.dataset.input === "1") new Crop(root);
+  else new Further(root);
+}
