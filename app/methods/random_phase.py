@@ -38,6 +38,13 @@ class RandomPhaseParams(SpotParams):
         "maps all values, the same way in every colour, so that the extreme ones just fit.",
         json_schema_extra=ADVANCED,
     )
+    periodic: bool = Option(
+        True,
+        title="Periodic component",
+        description="Take the jumps between opposite borders out of the crop first, as the articles do. Without this "
+        "they come back as a cross of streaks: turn it off to see what it is for.",
+        json_schema_extra=ADVANCED,
+    )
     add_smooth: bool = Option(
         False,
         title="Add the smooth component",
@@ -49,7 +56,13 @@ class RandomPhaseParams(SpotParams):
 
 
 def check(sizes: Sequence[Size], params: RandomPhaseParams) -> None:
-    """Refuse what cannot run: the smooth component has the crop's size and no other."""
+    """Refuse what cannot run: the smooth component has the crop's size and no other, and must have been taken out."""
+    if params.add_smooth and not params.periodic:
+        raise InvalidInputError(
+            "The smooth component is part of the crop as long as the periodic component is not taken: turn “Periodic "
+            "component” on to add it, or leave it out.",
+            "parameters.add_smooth",
+        )
     size = sizes[0]
     width, height = params.width or size.width, params.height or size.height
     if params.add_smooth and (width, height) != (size.width, size.height):
@@ -74,6 +87,7 @@ class _Run:
             phase=params.phase,
             alpha=params.alpha,
             window=params.window,
+            periodic=params.periodic,
             add_smooth=params.add_smooth,
         )
         self._peak = 2**context.depth - 1
@@ -94,6 +108,8 @@ class _Run:
         smooth += mean.astype(np.float32)[:, None, None]
         yield self._picture("smooth", "Smooth component, the mean added", smooth, 0.86)
         del smooth
+        if not self._params.periodic:
+            p[:] = h.transpose(2, 0, 1)
         self._context.progress("input-spectrum", 0.86)
         squares = power(p, self._context.threads)  # before the spot, which takes p's place
         if p.shape[1:] == (self._height, self._width):
@@ -103,7 +119,8 @@ class _Run:
             yield self._write("spot", "Extended spot", self._height, self._width, spot.rows, 0.88)
             del spot
         del p
-        yield log_modulus("input-spectrum", "Log-modulus of the periodic component", squares, h.shape[1], self._context)
+        title = "Log-modulus of the periodic component" if self._params.periodic else "Log-modulus of the crop"
+        yield log_modulus("input-spectrum", title, squares, h.shape[1], self._context)
         squares = self._field({"spot": 0.92, "output-spectrum": 0.99}, 0.9, "output-spectrum").power()
         yield log_modulus("output-spectrum", "Log-modulus of the texture", squares, self._width, self._context)
         self._context.progress("output-spectrum", 1.0)

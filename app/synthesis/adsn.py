@@ -26,6 +26,7 @@ def adsn(
     phase: Literal["add", "replace"] = "add",
     alpha: float = 0.1,
     window: Profile = "bump",
+    periodic: bool = True,
     add_smooth: bool = False,
     threads: int = 1,
     progress: Progress | None = None,
@@ -46,8 +47,11 @@ def adsn(
         colours.
     alpha, window
         The spot's transition, see `app.synthesis.spot.window`.
+    periodic : bool
+        Without, the sample itself takes the place of its periodic component: the jumps between its opposite borders
+        make a cross of streaks.
     add_smooth : bool
-        Add the smooth component back; for a texture of the sample's own size only.
+        Add the smooth component back; for a texture of the sample's own size only, and with ``periodic``.
     threads : int
         The result does not depend on it.
     progress : callable ``(stage, part)``, optional
@@ -61,7 +65,7 @@ def adsn(
     Raises
     ------
     ValueError
-        If values are not finite, or ``add_smooth`` is asked for with another size.
+        If values are not finite, or ``add_smooth`` is asked for with another size or without ``periodic``.
 
     Examples
     --------
@@ -79,6 +83,7 @@ def adsn(
         phase=phase,
         alpha=alpha,
         window=window,
+        periodic=periodic,
         add_smooth=add_smooth,
     )
     return synthesize(h, noise, threads, progress)

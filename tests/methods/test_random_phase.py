@@ -39,7 +39,7 @@ def pixels(picture):
 def test_every_parameter_has_a_title_a_description_and_a_default(name):
     schema = METHODS[name].params.model_json_schema()
     assert list(schema["properties"]) == [
-        "width", "height", "seed", "alpha", "window", "phase", "range", "add_smooth",
+        "width", "height", "seed", "alpha", "window", "phase", "range", "periodic", "add_smooth",
     ]  # fmt: skip
     for parameter, field in schema["properties"].items():
         assert field["title"]
@@ -66,6 +66,14 @@ def test_the_smooth_component_at_another_size_is_refused_with_words_that_help(na
     entry = METHODS[name]
     with pytest.raises(InvalidInputError, match="own size, 50 × 40") as refusal:
         entry.check([Size(50, 40, 3)], entry.params(add_smooth=True, **size))
+    assert refusal.value.field == "parameters.add_smooth"
+
+
+@BOTH
+def test_the_smooth_component_that_was_not_taken_out_cannot_be_added(name):
+    entry = METHODS[name]
+    with pytest.raises(InvalidInputError, match="turn “Periodic component” on") as refusal:
+        entry.check([Size(50, 40, 3)], entry.params(add_smooth=True, periodic=False))
     assert refusal.value.field == "parameters.add_smooth"
 
 
@@ -122,7 +130,9 @@ def test_periodic_and_smooth_component_add_up_to_the_crop():
 
 
 @BOTH
-@pytest.mark.parametrize("parameters", [{}, {"width": 130, "height": 99}, {"range": "stretch", "phase": "replace"}])
+@pytest.mark.parametrize(
+    "parameters", [{}, {"width": 130, "height": 99}, {"range": "stretch", "phase": "replace", "periodic": False}]
+)
 def test_the_same_seed_gives_the_same_bytes_on_any_number_of_threads(name, parameters):
     one = pictures(name, crop(), threads=1, seed=5, **parameters)
     two = pictures(name, crop(), threads=2, seed=5, **parameters)
@@ -174,6 +184,23 @@ def test_the_spot_lies_in_the_middle_of_the_mean():
     outside[20:60, 25:75] = False
     assert np.abs(spot[outside] - source.pixels.mean((0, 1))).max() <= 0.51
     assert spot[20:60, 25:75].std() > 10
+
+
+@BOTH
+@pytest.mark.parametrize("size", [{}, {"width": 100, "height": 80}, {"width": 30}])
+def test_without_the_periodic_component_the_spot_is_the_crops_and_the_other_steps_stay(name, size):
+    source = crop()
+    made, usual = pictures(name, source, periodic=False, **size), pictures(name, source, **size)
+    for step in ("crop", "periodic", "smooth"):
+        assert made[step] == usual[step]
+    for step in ("texture", "spot", "input-spectrum", "output-spectrum"):
+        assert made[step].png != usual[step].png
+    if not size:
+        assert (pixels(made["spot"]) == source.pixels).all()
+        # the slope along x jumps at the border, which is all in row 0 of the spectrum: the middle one of its picture
+        spectra = [pixels(steps["input-spectrum"]).astype(float) for steps in (made, usual)]
+        brightness = [spectrum[20].mean() - spectrum.mean() for spectrum in spectra]
+        assert brightness[0] > brightness[1] + 20
 
 
 @BOTH

@@ -37,7 +37,7 @@ def plain_bump(n, alpha):
 
 def plain(h, noise):
     """RPN and ADSN by the letter of the articles."""
-    p = plain_periodic(h.astype(np.float64))
+    p = plain_periodic(h.astype(np.float64)) if noise.periodic else h.astype(np.float64)
     (rows, columns), mean = h.shape[:2], p.mean((0, 1))
     spot = np.zeros((noise.height, noise.width, h.shape[2]))
     down = plain_bump(rows, noise.alpha) if noise.height > rows else np.ones(rows)
@@ -58,7 +58,7 @@ def plain(h, noise):
 
 
 @pytest.mark.parametrize("rayleigh", [False, True])
-@pytest.mark.parametrize("options", [{}, {"phase": "replace"}, {"add_smooth": True}])
+@pytest.mark.parametrize("options", [{}, {"phase": "replace"}, {"add_smooth": True}, {"periodic": False}])
 @pytest.mark.parametrize("size", [(64, 64), (65, 97), (101, 128), (1, 50), (50, 1), (2, 200)])
 def test_at_the_same_size_it_agrees_with_the_plain_formula(size, options, rayleigh):
     h = np.random.default_rng(0).uniform(0, 255, (*size, 3)).astype(np.float32)
@@ -67,11 +67,11 @@ def test_at_the_same_size_it_agrees_with_the_plain_formula(size, options, raylei
 
 
 @pytest.mark.parametrize("rayleigh", [False, True])
-@pytest.mark.parametrize("phase", ["add", "replace"])
+@pytest.mark.parametrize("options", [{}, {"phase": "replace"}, {"periodic": False}])
 @pytest.mark.parametrize("size", [(128, 128), (131, 99), (64, 300), (70, 64)])
-def test_at_a_larger_size_it_agrees_with_the_plain_formula(size, phase, rayleigh):
+def test_at_a_larger_size_it_agrees_with_the_plain_formula(size, options, rayleigh):
     h = np.random.default_rng(1).uniform(0, 255, (64, 64, 2)).astype(np.float32)
-    noise = Noise(*size, seed=12, rayleigh=rayleigh, phase=phase, alpha=0.2)
+    noise = Noise(*size, seed=12, rayleigh=rayleigh, alpha=0.2, **options)
     np.testing.assert_allclose(synthesize(h, noise, threads=2), plain(h, noise), atol=255 * 1e-5)
 
 
@@ -99,6 +99,7 @@ def test_the_sample_is_not_changed():
     before = h.copy()
     synthesize(h, Noise(30, 40))
     synthesize(h, Noise(60, 41))
+    synthesize(h, Noise(60, 41, periodic=False))
     assert (h == before).all()
 
 

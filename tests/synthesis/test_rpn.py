@@ -137,6 +137,20 @@ def test_the_smooth_component_can_be_added_back_at_the_same_size_only(model):
         model(h, 20, 26, add_smooth=True)
 
 
+@pytest.mark.parametrize("model", [rpn, adsn])
+def test_the_smooth_component_cannot_be_added_to_what_was_not_freed_of_it(model):
+    with pytest.raises(ValueError, match="taken out"):
+        model(image(20, 25), periodic=False, add_smooth=True)
+
+
+def test_without_the_periodic_component_the_modulus_is_the_samples_own_with_its_cross():
+    """A slope along x jumps at the border: its frequencies k₁ = 0 are strong, and the periodic component's are not."""
+    h = image(32, 40) + np.linspace(0, 600, 40, dtype=np.float32)[None, :, None]
+    cross = [np.abs(spectrum(rpn(h, seed=1, periodic=periodic)))[0, 1:] for periodic in (False, True)]
+    np.testing.assert_allclose(cross[0], np.abs(spectrum(h))[0, 1:], rtol=1e-3)
+    assert (np.square(cross[0]).sum(0) > 20 * np.square(cross[1]).sum(0)).all()
+
+
 def test_a_texture_smaller_than_the_sample_is_that_of_its_centre():
     h = image(30, 41)
     assert (rpn(h, 16, 21, seed=5) == rpn(np.ascontiguousarray(h[7:23, 10:31]), seed=5)).all()
