@@ -17,7 +17,7 @@ from app.experiments.service import Service
 from app.settings import ROOT, Settings
 from app.store.blobs import FileBlobs
 from app.store.sql import SqlStore
-from app.web import docs, health, pages, problems, uploads
+from app.web import docs, health, pages, problems, structure_page, uploads
 from app.web.api import events, experiments, methods, outputs, samples, structure, synthesize
 from app.web.head import HeadAsGet
 from app.web.limits import BodyLimit
@@ -76,7 +76,8 @@ def create_app(settings: Settings | None = None, service: Service | None = None)
     app.state.stopping = asyncio.Event()
     app.state.upload_threads = anyio.CapacityLimiter(UPLOADS_AT_ONCE)
     problems.install(app, pages.render_error)
-    for part in (methods, samples, structure, experiments, events, outputs, synthesize, health, docs, pages):
+    api = (methods, samples, structure, experiments, events, outputs, synthesize)
+    for part in (*api, health, docs, pages, structure_page):
         app.include_router(part.router)
     app.mount("/static", StaticFiles(directory=ROOT / "static"), name="static")
     app.mount(docs.SWAGGER_URL, StaticFiles(directory=docs.SWAGGER_FILES), name="swagger")

@@ -120,11 +120,11 @@ def crops(image: Image.Image, reduced: int) -> Iterator[Real]:
 
 
 def photographs(reduced: int = 1) -> list[Photograph]:
-    """Every bundled photograph that is large enough, and no scene."""
+    """Every bundled photograph that is large enough; neither scenes nor what was drawn."""
     found = []
     for entry in bundled(ROOT / "samples"):
         image = Image.open(entry.path)
-        if entry.kind == "scene" or min(image.size) < SIDE * reduced:
+        if entry.kind in ("scene", "drawn") or min(image.size) < SIDE * reduced:
             continue
         greys = list(crops(image, reduced))
         scores = {name: np.array([score(grey) for grey in greys]) for name, score in CANDIDATES.items()}

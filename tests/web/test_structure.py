@@ -1,8 +1,15 @@
 """The structure index of a crop by the API, and the page that explains it."""
 
+import itertools
+
+import numpy as np
 import pytest
 
+from app.experiments.meter import reading
 from app.images.crop import Rectangle
+from app.synthesis.structure import Structure
+from app.web.structure_page import SIDE, Measured, placed
+from app.web.templating import TEMPLATES, meter_place
 
 URL = "/api/v1/samples/gravel_gray/structure"
 
@@ -44,3 +51,49 @@ def test_what_does_not_fit_is_refused_with_a_problem_that_names_it(site, query):
 
 def test_an_unknown_sample_is_not_found(site):
     assert site.client.get(URL.replace("gravel_gray", "none")).status_code == 404
+
+
+def test_the_page_places_the_photographs_and_explains_the_index_without_a_script(site):
+    page = site.client.get("/structure")
+    delta = site.service.structure("gravel_gray", Rectangle(8, 8, 32, 32)).delta
+    assert page.status_code == 200
+    assert "<script" not in page.text
+    assert 'href="/samples/gravel_gray?crop=8,8,32,32"' in page.text
+    assert f'<span class="meter-number">{max(delta, 0):.2f}</span> {reading(delta).verdict}' in page.text
+    assert page.text.count("<math") > 10
+    assert "style=" not in page.text  # the security policy would drop it
+
+
+@pytest.mark.parametrize("limit", [0.055, 0.075])
+def test_the_number_as_it_is_shown_has_one_word(limit):
+    """So the limits lie between two values of its second decimal."""
+    shown = {f"{delta:.2f}": reading(delta).verdict for delta in np.arange(0, 0.2, 0.0011)}
+    assert all(reading(float(number)).verdict == word for number, word in shown.items())
+    assert reading(limit - 1e-6).verdict != reading(limit).verdict
+
+
+@pytest.mark.parametrize(("delta", "word", "width"), [(-0.02, "micro-texture", "0.0"), (0.1, "structured", "50.0")])
+def test_a_picture_s_meter_is_a_bar_a_number_and_a_word(delta, word, width):
+    macro = TEMPLATES.env.get_template("_partials/meter.html").module.meter
+    said = macro(delta)
+    assert f'class="meter-value" width="{width}"' in said
+    assert f"{max(delta, 0):.2f}</span> {word}" in said
+
+
+@pytest.mark.parametrize("structure", [None, Structure(0.1, 1.0, 1.0, 0.9, 0.1)])
+def test_the_crop_s_meter_shows_what_the_page_knows_and_hides_until_it_knows(site, structure):
+    part = TEMPLATES.env.get_template("_partials/meter.html")
+    said = part.render(sample=site.service.sample("gravel_gray"), structure=structure)
+    assert (" hidden" in said) == (structure is None)
+    assert ("Structured: random" in said) == (structure is not None)
+    assert 'data-sample="gravel_gray"' in said
+
+
+def test_pictures_on_the_scale_do_not_overlap_and_stand_at_their_index(site):
+    sample = site.service.sample("gravel_gray")
+    deltas = np.sort(np.random.default_rng(0).uniform(-0.01, 0.45, 60))
+    places = placed([Measured(sample, "", Rectangle(0, 0, 9, 9), delta) for delta in deltas])
+    for place in places:
+        assert place.left + SIDE / 2 == pytest.approx(10 * meter_place(place.photograph.delta))
+    for a, b in itertools.combinations(places, 2):
+        assert abs(a.left - b.left) >= SIDE or abs(a.top - b.top) >= SIDE
