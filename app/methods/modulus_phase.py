@@ -19,19 +19,17 @@ class ModulusPhaseParams(StillParams):
     """Parameters of the swap: those that all methods have. Nothing is drawn at random."""
 
     width: int | None = Field(
-        None,
-        ge=1,
-        title="Width",
-        description="Pixels of the pictures; default: as the narrower crop, of both the centre.",
+        None, ge=1, title="Width", description="Pixels of the texture; default: as the narrower crop. Both are centred."
     )
     height: int | None = Field(
-        None,
-        ge=1,
-        title="Height",
-        description="Pixels of the pictures; default: as the lower crop, of both the centre.",
+        None, ge=1, title="Height", description="Pixels of the texture; default: as the lower crop. Both are centred."
     )
     seed: int = Field(
-        0, ge=0, le=MAX_SEED, title="Seed", description="Nothing is drawn at random here: the seed changes nothing."
+        0,
+        ge=0,
+        le=MAX_SEED,
+        title="Seed",
+        description="Start of the random numbers; none are drawn here, so it changes nothing.",
     )
 
 
