@@ -19,6 +19,7 @@ from app.web.deps import (
     ServiceDep,
     SettingsDep,
     TokenDep,
+    get_service,
     in_upload_thread,
     remember_owner,
 )
@@ -26,6 +27,7 @@ from app.web.drafts import Draft, opened, refused, sent, typed
 from app.web.inputs import Choices, further, prefix
 from app.web.problems import status_of
 from app.web.sample_form import form_context
+from app.web.structure_page import form_structure
 from app.web.templating import render
 from app.web.uploads import receive_form
 
@@ -109,6 +111,7 @@ def _sample(
 ) -> Response:
     context = form_context(sample, choices, draft) | {
         "limit": settings.max_upload_bytes,
+        "structure": form_structure(get_service(request), sample, draft.values),
         "summary_title": WORDS[503] if status == 503 else "Please look at this again",
     }
     return render(request, "sample.html", context, status)

@@ -1,11 +1,13 @@
 """The page of the structure index: what it says, on a scale of the bundled photographs, its formulas and its limits."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 
 from fastapi import APIRouter, Request
 from starlette.responses import Response
 
+from app.errors import InvalidInputError
 from app.experiments.meter import MICRO, STRUCTURED, Reading, reading
 from app.experiments.model import Sample
 from app.experiments.service import Service
@@ -14,7 +16,9 @@ from app.methods.explanation import Formula
 from app.methods.references import RANDOM_PHASE_TEXTURES, SHARPNESS
 from app.samples import bundled
 from app.settings import Settings
+from app.synthesis.structure import Structure
 from app.web.deps import ServiceDep, SettingsDep
+from app.web.inputs import crop_names
 from app.web.templating import METER_END, meter_place, render
 
 SIDE = 56.0  # of a picture on the scale, whose width is 1000
@@ -94,6 +98,14 @@ class Placed:
     photograph: Measured
     left: float
     top: float
+
+
+def form_structure(service: Service, sample: Sample, values: Mapping[str, str]) -> Structure | None:
+    """Measure the crop that a form's fields name, for pages without a script; None if it cannot be measured."""
+    with suppress(InvalidInputError):
+        crop = Rectangle.parse(",".join(values.get(name, "") for name in crop_names(1)))
+        return service.structure(sample.id, crop)
+    return None
 
 
 @router.get("/structure")
