@@ -18,6 +18,7 @@ from app.methods.references import HEEGER_BERGEN as ARTICLE
 from app.methods.references import IPOL_HEEGER_BERGEN, PERIODIC_PLUS_SMOOTH, STEERABLE_PYRAMID
 from app.methods.sub_bands import mosaic
 from app.synthesis.heeger_bergen import Decomposition, Sample, Synthesis
+from app.synthesis.periodic import smooth_planes
 from app.synthesis.pyramid import SteerablePyramid
 from app.synthesis.team import Team
 from app.synthesis.work import Work
@@ -121,8 +122,8 @@ def run(sources: Sequence[Source], params: HeegerBergenParams, context: Context)
             if number < params.iterations and number.bit_count() == 1:
                 views[f"iteration-{number}", f"After iteration {number}"] = synthesis.planes(VIEW)
         texture = synthesis.planes()
-        if params.add_smooth and sample.smooth is not None:
-            texture += sample.smooth
+        if params.add_smooth:
+            texture += smooth_planes(source.pixels, context.threads)
         context.progress("texture", 0.8)
         yield encode("texture", "Texture", _pixels(texture), source.peak, context, kind="texture")
         del texture

@@ -14,6 +14,7 @@ Heeger, Bergen, "Pyramid-Based Texture Analysis/Synthesis", SIGGRAPH 1995; Brian
 Heeger-Bergen Pyramid-Based Texture Synthesis Algorithm", IPOL 2014.
 """
 
+import math
 from dataclasses import dataclass
 from itertools import product
 from typing import Literal
@@ -33,6 +34,7 @@ Real = NDArray[np.float32]
 Edges = Literal["periodic", "mirror"]
 
 FINEST = Band(0, None)
+MOST = 1 << 20  # values of a band that are kept: of a huge crop's, quantiles this dense
 
 
 @dataclass(frozen=True)
@@ -71,13 +73,11 @@ class Sample:
     h : ndarray of float32, shape (H, W, C)
     decomposition : Decomposition
     pyramid : SteerablePyramid
-        The texture's: no more values are kept of a band than the texture's band has.
+        The texture's: no more values are kept of a band than the texture's band has, or than `MOST`.
     work : Work
 
     Attributes
     ----------
-    smooth : ndarray of float32, shape (C, H, W), optional
-        The smooth component, which is not in the rest, for periodic edges.
     space : ColourSpace
     channels : ndarray of float32, shape (C, H, W)
         The principal components.
@@ -87,20 +87,18 @@ class Sample:
         if not np.isfinite(h).all():
             raise ValueError("The sample holds values that are not finite.")
         planes = h.transpose(2, 0, 1).astype(np.float32, order="C")
-        self.smooth: Real | None = None
         if decomposition.edges == "periodic":
-            self.smooth = smooth_planes(h, work.threads)
-            planes -= self.smooth
+            planes -= smooth_planes(h, work.threads)
         self.space = ColourSpace.of(planes)
         self.channels = self.space.forward(planes)
-        self.pixels = [_ordered(channel, pyramid.shape(FINEST)) for channel in self.channels]
+        self.pixels = [_ordered(channel, math.prod(pyramid.shape(FINEST))) for channel in self.channels]
         self.bands: dict[tuple[int, Band], Real] = {}
         taken_apart = [Channel(channel, decomposition) for channel in self.channels]
 
         def analyse(item: tuple[int, Band]) -> None:
             work.alive()
             channel, band = item
-            self.bands[item] = _ordered(taken_apart[channel].band(band), pyramid.shape(band))
+            self.bands[item] = _ordered(taken_apart[channel].band(band), min(MOST, math.prod(pyramid.shape(band))))
 
         work.run("sample", analyse, list(product(range(len(planes)), pyramid.bands)))
 
@@ -131,7 +129,7 @@ class Synthesis:
 
     def iterate(self, stage: str) -> None:
         """Give all bands, and then the pixels, the sample's histograms."""
-        totals = [Total(self._pyramid, spectrum.shape) for spectrum in self._spectra]
+        totals = [Total(self._pyramid) for _ in self._planes]
 
         def match_band(item: tuple[int, Band]) -> None:
             channel, band = item
@@ -141,8 +139,9 @@ class Synthesis:
             match(values, self._sample.bands[item], self._work.alive)
             part = window.synthesise(values)
             self._work.alive()
-            if totals[channel].complete(band, window, part):
-                self.take(channel, to_image(totals[channel].spectrum, self._pyramid.shape(FINEST)))
+            total = totals[channel].add(band, window, part)
+            if total is not None:
+                self.take(channel, to_image(total, self._pyramid.shape(FINEST)))
 
         self._work.run(stage, match_band, list(product(range(len(self._planes)), self._pyramid.bands)))
 
@@ -182,9 +181,9 @@ class Synthesis:
         return distances
 
 
-def _ordered(values: Real, shape: tuple[int, int]) -> Real:
-    """Values in order, and no more quantiles of them than an image of this shape has pixels."""
-    ordered, count = np.sort(values, axis=None), shape[0] * shape[1]
+def _ordered(values: Real, count: int) -> Real:
+    """Values in order, or ``count`` quantiles of them if there are more."""
+    ordered = np.sort(values, axis=None)
     return quantiles(ordered, count) if count < len(ordered) else ordered
 
 
@@ -252,6 +251,8 @@ def heeger_bergen(
         )[:, :, 0]
     decomposition = decomposition or Decomposition()
     height, width = height or h.shape[0], width or h.shape[1]
+    if add_smooth and (decomposition.edges != "periodic" or (height, width) != h.shape[:2]):
+        raise ValueError("The smooth component needs periodic edges and a texture of the sample's own size.")
     pyramid = SteerablePyramid(height, width, decomposition.scales, decomposition.orientations)
     with Team(threads) as team:
         work = Work(team, progress)
@@ -261,7 +262,5 @@ def heeger_bergen(
             synthesis.iterate(f"iteration {iteration}")
     planes = synthesis.planes()
     if add_smooth:
-        if sample.smooth is None or sample.smooth.shape != planes.shape:
-            raise ValueError("The smooth component needs periodic edges and a texture of the sample's own size.")
-        planes += sample.smooth
+        planes += smooth_planes(h, threads)
     return planes.transpose(1, 2, 0)

@@ -159,20 +159,25 @@ class SteerablePyramid:
 class Total:
     """A spectrum as the sum of its bands, in one order whichever is done first: sums of floats depend on it."""
 
-    def __init__(self, pyramid: SteerablePyramid, shape: tuple[int, ...]) -> None:
-        self.spectrum = np.zeros(shape, np.complex64)
+    def __init__(self, pyramid: SteerablePyramid) -> None:
         self._expected = deque(pyramid.bands)
         self._waiting: dict[Band, tuple[Filter, Complex]] = {}
+        self._sum: Complex | None = None
         self._lock = threading.Lock()
 
-    def complete(self, band: Band, window: Filter, part: Complex) -> bool:
-        """Take one band's part; whether it was the last one that was missing."""
+    def add(self, band: Band, window: Filter, part: Complex) -> Complex | None:
+        """Take one band's part; the sum, to be kept by the caller, if it was the last one that was missing."""
         with self._lock:
             self._waiting[band] = window, part
             while self._expected and self._expected[0] in self._waiting:
                 ready, values = self._waiting.pop(self._expected.popleft())
-                ready.add(values, self.spectrum)
-            return not self._expected
+                if self._sum is None:  # the high-pass residual comes first and has the whole size
+                    self._sum = np.zeros_like(values)
+                ready.add(values, self._sum)
+            if self._expected:
+                return None
+            total, self._sum = self._sum, None
+            return total
 
 
 def _log_radius(y: Double, x: Double) -> Double:
