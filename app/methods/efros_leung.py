@@ -45,17 +45,16 @@ class EfrosLeungParams(StillParams):
 
 
 def _terms(size: Size, half_patch: int) -> tuple[int, int]:
-    """Positions of a window in the crop, and products that comparing it with one of them takes."""
+    """Positions in the crop, and products that comparing a window with one of them takes."""
     side = 2 * half_patch + 1
-    positions = max(0, size.width - side + 1) * max(0, size.height - side + 1)
-    return positions, side * side * (size.channels + 1)
+    return size.width * size.height, side * side * (size.channels + 1)
 
 
 def default_size(sizes: Sequence[Size]) -> tuple[int, int]:
     """The crop's own, or in its proportions what takes about half a minute."""
     size = sizes[0]
     positions, products = _terms(size, HALF_PATCH)
-    factor = min(1.0, sqrt(USUAL_WORK / max(1, positions * products * size.width * size.height)))
+    factor = min(1.0, sqrt(USUAL_WORK / products) / positions)
     return max(1, int(size.width * factor)), max(1, int(size.height * factor))
 
 
@@ -70,7 +69,7 @@ def check(sizes: Sequence[Size], params: EfrosLeungParams) -> None:
         )
     positions, products = _terms(size, params.half_patch)
     if positions * products > MOST_TABLE:
-        most = isqrt(MOST_TABLE // products) + side - 1
+        most = isqrt(MOST_TABLE // products)
         raise InvalidInputError(
             f"The crop of {size.width} × {size.height} pixels is too large to be searched for every pixel: with "
             f"windows of {side} × {side} it can be about {most} × {most}. Crop a smaller, typical part "
@@ -81,8 +80,8 @@ def check(sizes: Sequence[Size], params: EfrosLeungParams) -> None:
     width, height = params.width or default[0], params.height or default[1]
     if width * height * positions * products > MOST_WORK:
         texture = isqrt(MOST_WORK // (positions * products))
-        crop = isqrt(MOST_WORK // (width * height * products)) + side - 1
-        instead = f", or crop at most about {crop} × {crop}" if crop >= 2 * side else ""
+        crop = isqrt(MOST_WORK // (width * height * products))
+        instead = f", or crop at most about {crop} × {crop}" if crop >= 3 * side else ""
         raise InvalidInputError(
             f"Every pixel of the texture is searched for in the whole crop: {width} × {height} pixels from "
             f"{size.width} × {size.height} with windows of {side} × {side} would take too long. From this crop ask for "

@@ -129,8 +129,7 @@ def efros_leung(
                 around = (y * canvas.shape[1] + x)[:, None] + window
                 values, mask = canvas.reshape(-1, h.shape[2])[around], known.ravel()[around]
                 drawn = search.draw(values, mask, tolerance, chances[ranks])
-                rows, columns = np.divmod(drawn, h.shape[1] - 2 * half_patch)
-                fill(sequence[ranks], rows + half_patch, columns + half_patch)
+                fill(sequence[ranks], *np.divmod(drawn, h.shape[1]))
                 done += len(ranks)
     progress("growth", 1.0)
     return Grown(np.ascontiguousarray(canvas[inside]), copied, order)

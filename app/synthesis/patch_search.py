@@ -27,6 +27,7 @@ Index = NDArray[np.intp]
 
 TILE = 64  # patches in one of the small products, so that each stays in its thread and in the processor's cache
 PAIRS = 4096  # patches measured in double precision at a time
+OUTSIDE = 1e30  # stands for s² beyond the image: a patch that is known there is far from any
 UNIT = 2.0**-24  # unit roundoff of single precision
 
 
@@ -58,14 +59,15 @@ def gaussian_window(half_patch: int) -> Double:
 class PatchSearch:
     """All patches of an image, to be searched again and again.
 
-    Patches that are equal are searched once and count as often as they occur.
+    There is one around every pixel. Around those near the border it reaches beyond the image, and is compared only
+    where what is known lies inside. Patches that are equal are searched once and count as often as they occur.
 
     Parameters
     ----------
     h : ndarray of float32, shape (H, W, C)
-        Finite; neither side shorter than 2n + 1.
+        Finite; neither side shorter than 2n + 1, so that some patch can always be compared.
     half_patch : int
-        n ≥ 1: patches have 2n + 1 pixels a side and lie inside the image.
+        n ≥ 1: patches have 2n + 1 pixels a side.
     team : Team
         Computes the products; the result does not depend on its threads.
     """
@@ -74,10 +76,11 @@ class PatchSearch:
         side, channels = 2 * half_patch + 1, h.shape[2]
         self._team = team
         self._weights = gaussian_window(half_patch).ravel()
-        self._patches = np.moveaxis(sliding_window_view(h, (side, side), axis=(0, 1)), 2, 4)
-        self._columns = self._patches.shape[1]
+        frame = ((half_patch, half_patch), (half_patch, half_patch), (0, 0))
+        self._patches = _patches(np.pad(h, frame), side)
+        self._columns = h.shape[1]
         self._centre = h.mean((0, 1), dtype=np.float64)
-        rows = self._patches.reshape(-1, side * side * channels)
+        rows = _patches(np.pad(h, frame, constant_values=np.nan), side).reshape(-1, side * side * channels)
         classes, self._first = _equal_rows(rows)
         self._members = np.argsort(classes, kind="stable")
         self._counts = np.bincount(classes)
@@ -87,14 +90,15 @@ class PatchSearch:
         self._error = 1.01 * UNIT * (self._tiles.shape[1] + 16)
 
     def _tiled(self, rows: Real) -> Real:
-        """The distinct patches, (s, s²) with s centred, as (tiles, terms, `TILE`)."""
+        """The distinct patches, (s, s²) with s centred, and (0, `OUTSIDE`), as (tiles, terms, `TILE`)."""
         pixels, channels = len(self._weights), len(self._centre)
         tiles = np.zeros((-(-len(self._first) // TILE), pixels * (channels + 1), TILE), np.float32)
         for number, tile in enumerate(tiles):
             members = self._first[number * TILE : (number + 1) * TILE]
             s = rows[members].reshape(-1, pixels, channels) - self._centre
-            tile[: pixels * channels, : len(members)] = s.reshape(len(members), -1).T
-            tile[pixels * channels :, : len(members)] = np.square(s).sum(2).T
+            squares = np.square(s).sum(2)
+            tile[: pixels * channels, : len(members)] = np.nan_to_num(s).reshape(len(members), -1).T
+            tile[pixels * channels :, : len(members)] = np.nan_to_num(squares, nan=OUTSIDE).T
         return tiles
 
     def __len__(self) -> int:
@@ -118,7 +122,7 @@ class PatchSearch:
         Returns
         -------
         ndarray of int, shape (M,)
-            y (W − 2n) + x of the upper left corner of the patch taken.
+            y W + x of the pixel in the middle of the patch taken.
         """
         weights = self._weights * known
         centred = values - self._centre
@@ -129,7 +133,8 @@ class PatchSearch:
         # |p| |s| + |s|² with |s| ≤ |p| + √d.
         reach = (1 + tolerance) * self._distances(values, weights, np.arange(len(values)), best)
         doubt = 3 * self._error * (np.sqrt(energy) + np.sqrt(reach)) ** 2
-        rows, found = np.nonzero(rough <= (reach - energy + doubt).astype(np.float32)[:, None])
+        near = rough <= (reach - energy + doubt).astype(np.float32)[:, None]
+        rows, found = np.divmod(np.flatnonzero(near), len(self))  # several times faster than a search of two axes
         distances = self._distances(values, weights, rows, found)
         ends = np.searchsorted(rows, np.arange(len(values)), side="right")
         least = np.minimum.reduceat(distances, np.concatenate([[0], ends[:-1]]))
@@ -170,6 +175,11 @@ class PatchSearch:
             # Terms in the same order for every patch: equal patches must have equal distances.
             result[pairs] = (differences.sum(2) * weights[rows[pairs]]).sum(1)
         return result
+
+
+def _patches(framed: Real, side: int) -> Real:
+    """All windows of an image, shape (rows, columns, side, side, C), as a view."""
+    return np.moveaxis(sliding_window_view(framed, (side, side), axis=(0, 1)), 2, 4)
 
 
 def _equal_rows(rows: Real) -> tuple[Index, Index]:
