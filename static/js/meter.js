@@ -12,11 +12,13 @@ class Meter {
     this.bar = root.querySelector(".meter-bar");
     this.asked = "";
     this.asking = false;
-    root.closest("form").addEventListener("crop", () => this.follow());
+    for (const change of ["crop", "change"]) root.closest("form").addEventListener(change, () => this.follow());
     this.follow();
   }
 
+  /** What to ask; nothing while the input is not on the screen. */
   address() {
+    if (!this.root.parentElement.checkVisibility()) return "";
     const sample = this.select ? this.select.value : this.root.dataset.sample;
     const crop = this.fields.map((field) => field.value);
     if (!sample || !crop.every((value) => /^\d+$/.test(value))) return "";
