@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from app.errors import AppError, InvalidInputError
 from app.experiments.model import Experiment, Sample
-from app.experiments.submission import NewExperiment
+from app.experiments.submission import NewExperiment, NewInput
 from app.methods.fields import fields
 from app.methods.model import Method, Size
 from app.methods.registry import METHODS, method
@@ -106,13 +106,12 @@ def sent(sample: Sample, choices: Choices, submitted: Mapping[str, str], *, list
         return Sent(Draft(values, {"method": "Choose a method."}))
     inputs = read_inputs(sample, chosen, choices, values, errors)
     if values.get("size", "free") != "free":
-        sizes = [Size(of.crop.width, of.crop.height, found.channels) for found, of in inputs.values() if of.crop]
-        _resize(values, chosen, [] if errors else sizes, errors)
+        _resize(values, inputs.get(1), errors)
     parsed = parse(chosen, values)
     errors |= parsed.errors
     if errors:
         return Sent(Draft(values, errors))
-    request = NewExperiment(chosen.name, tuple(of for _, of in inputs.values()), parsed.parameters, listed)
+    request = NewExperiment(chosen.name, tuple(inputs.values()), parsed.parameters, listed)
     return Sent(Draft(values), request, tuple(inputs))
 
 
@@ -129,10 +128,13 @@ def refused(read: Sent, chosen: Method, error: AppError) -> Draft:
     return Draft(read.draft.values, {name: error.message})
 
 
-def _resize(values: dict[str, str], chosen: Method, sizes: list[Size], errors: dict[str, str]) -> None:
-    """Give the texture the size that was chosen as a multiple; with sizes unknown it only says whether it is one."""
-    if values["size"] not in SIZES:
+def _resize(values: dict[str, str], first: NewInput | None, errors: dict[str, str]) -> None:
+    """Give the texture the size that was chosen; once the crop's is what the method does by itself."""
+    factor = values["size"]
+    if factor not in SIZES:
         errors["size"] = "Choose one of the sizes, or “free” and a width and a height."
-    elif sizes:
-        factor = float(values["size"])
-        values["width"], values["height"] = (str(int(side * factor + 0.5)) for side in chosen.size(sizes))
+    elif factor == "1":
+        values["width"] = values["height"] = ""
+    elif first and first.crop:
+        sides = (first.crop.width, first.crop.height)
+        values["width"], values["height"] = (str(int(side * float(factor) + 0.5)) for side in sides)

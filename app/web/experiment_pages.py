@@ -10,16 +10,19 @@ from fastapi import APIRouter, Form, Query, Request
 from fastapi.responses import RedirectResponse
 from starlette.responses import Response
 
-from app.errors import NotFoundError
-from app.experiments.model import Experiment, Status
+from app.experiments.model import Experiment, Sample, Status
 from app.experiments.ownership import new_token
 from app.experiments.service import Service
 from app.experiments.submission import NewExperiment, NewInput
+from app.images.crop import Rectangle
 from app.methods.fields import fields
 from app.methods.model import Method
 from app.methods.registry import METHODS, method
 from app.web.deps import ServiceDep, TokenDep, base_url, remember_owner
 from app.web.drafts import address
+from app.web.forms import SHARED
+from app.web.inputs import most
+from app.web.panes import crop_panes, facts, gallery, input_titles, steps, texture_pane
 from app.web.snippets import snippets
 from app.web.templating import label, render
 
@@ -30,26 +33,6 @@ View = Annotated[Literal["side", "flip", "slider", "tiled", "steps"], Query()]
 Tiles = Annotated[int, Query(ge=2, le=3)]
 
 router = APIRouter(include_in_schema=False)
-
-
-@dataclass(frozen=True)
-class Pane:
-    """One picture of the viewer; ``page`` is where its title leads."""
-
-    title: str
-    url: str
-    width: int
-    height: int
-    note: str = ""
-    page: str = ""
-
-
-def _pane(experiment: Experiment, name: str, title: str, **rest: str) -> Pane:
-    output = experiment.output(name)
-    if output is None:
-        raise NotFoundError(f"The experiment {experiment.id} has no picture “{name}”.")
-    url = f"/api/v1/experiments/{experiment.id}/outputs/{name}"
-    return Pane(title, url, output.width, output.height, **rest)
 
 
 def _page(experiment: Experiment) -> str:
@@ -66,10 +49,9 @@ def experiment_page(
     tiles: Tiles = 2,
 ) -> Response:
     experiment = service.get(experiment_id)
-    declared = method(experiment.method)
     base = base_url(request)
     context = _common(service, experiment, token) | {
-        "title": f"{label(experiment.method)} of {_sample_title(service, experiment)}",
+        "title": f"{label(experiment.method)} of {_subject(service, experiment)}",
         "view": view,
         "tiles": tiles,
         "url": f"{base}/experiments/{experiment.id}",
@@ -78,16 +60,15 @@ def experiment_page(
     if experiment.status is Status.SUCCEEDED:
         context |= {
             "preview": f"{base}/api/v1/experiments/{experiment.id}/outputs/.preview",
-            "panes": [
-                _pane(experiment, "crop", "Sample"),
-                _pane(experiment, "texture", label(experiment.method)),
-            ],
-            "steps": list(_steps(experiment)),
-            "others": [other for other in METHODS.values() if other.name != declared.name and _fits(other, declared)],
+            "panes": [*crop_panes(experiment), texture_pane(experiment)],
+            "gallery": gallery(experiment),
+            "steps": steps(experiment),
+            "facts": list(facts(experiment)),
+            "others": [other for other in METHODS.values() if _shares_phase(other, experiment)],
             "downloads": list(_downloads(experiment)),
             "timings": list(_timings(experiment)),
             "total": f"{sum(experiment.timings.values()):.2f} s",
-            "seamless": not experiment.parameters.get("add_smooth"),
+            "seamless": _seamless(experiment),
             "snippets": snippets(experiment, base),
         }
     return render(request, "experiment.html", context)
@@ -99,17 +80,35 @@ def _common(service: Service, experiment: Experiment, token: str | None) -> dict
         "experiment": experiment,
         "snapshot": service.snapshot(experiment.id),
         "method": declared,
-        "sample": service.sample(experiment.inputs[0].sample),
-        "sample_title": _sample_title(service, experiment),
+        "sources": _sources(service, experiment),
+        "subject": _subject(service, experiment),
         "owned": service.owns(experiment, token),
         "rows": list(_rows(experiment)),
-        "edit_url": f"/samples/{experiment.inputs[0].sample}?{urlencode(address(experiment), safe=',')}",
+        "edit_url": f"/samples/{experiment.inputs[0].sample}?{urlencode(address(experiment), safe=',:')}",
     }
 
 
-def _sample_title(service: Service, experiment: Experiment) -> str:
-    title = service.sample(experiment.inputs[0].sample).title
-    return title.lower() if title else "a photograph"
+@dataclass(frozen=True)
+class Source:
+    """One input: what it is called here, the sample and what is shown of it."""
+
+    title: str
+    sample: Sample
+    name: str
+    crop: Rectangle
+
+
+def _sources(service: Service, experiment: Experiment) -> list[Source]:
+    found = [service.sample(source.sample) for source in experiment.inputs]
+    names = [sample.title or "A photograph" for sample in found]
+    parts = zip(input_titles(experiment), found, names, experiment.inputs, strict=True)
+    return [Source(title, sample, name, of.crop) for title, sample, name, of in parts]
+
+
+def _subject(service: Service, experiment: Experiment) -> str:
+    """What the textures are of, each sample once, as in "gravel and rippled sand"."""
+    *others, last = dict.fromkeys(source.name[0].lower() + source.name[1:] for source in _sources(service, experiment))
+    return f"{', '.join(others)} and {last}" if others else last
 
 
 def _rows(experiment: Experiment) -> Iterator[tuple[str, str]]:
@@ -118,12 +117,6 @@ def _rows(experiment: Experiment) -> Iterator[tuple[str, str]]:
     for entry in fields(method(experiment.method).params):
         value = experiment.parameters.get(entry.name)
         yield entry.label, words[value] if isinstance(value, bool) else str(value)
-
-
-def _steps(experiment: Experiment) -> Iterator[Pane]:
-    for output in experiment.outputs:
-        if output.listed:
-            yield _pane(experiment, output.name, output.title)
 
 
 def _downloads(experiment: Experiment) -> Iterator[tuple[str, str]]:
@@ -149,8 +142,17 @@ def _timings(experiment: Experiment) -> Iterator[tuple[str, str, str]]:
         yield words, shown, f"{100 * seconds / longest if longest else 0:.1f}"
 
 
-def _fits(other: Method, declared: Method) -> bool:
-    return len(other.inputs) == len(declared.inputs)
+def _shares_phase(other: Method, experiment: Experiment) -> bool:
+    """Whether another method would draw the same phase from these inputs."""
+    declared = method(experiment.method)
+    fits = len(other.inputs) <= len(experiment.inputs) <= most(other)
+    return other.name != declared.name and other.phase and declared.phase and fits
+
+
+def _seamless(experiment: Experiment) -> bool:
+    declared = method(experiment.method)
+    # Not validated: an old experiment's parameters may be none that a later version takes.
+    return declared.toroidal(declared.params.model_construct(**experiment.parameters))
 
 
 @router.get("/compare/{first_id}/{second_id}")
@@ -167,11 +169,11 @@ def compare(
     both = [service.get(first_id), service.get(second_id)]
     first, second = both
     names = [label(experiment.method) for experiment in both]
-    samples = dict.fromkeys(_sample_title(service, experiment) for experiment in both)
-    same_crop = first.inputs == second.inputs
+    samples = dict.fromkeys(_subject(service, experiment) for experiment in both)
+    same_inputs = first.inputs == second.inputs
     context: dict[str, Any] = {
         "title": f"{' and '.join(names)} of {' and '.join(samples)}",
-        "same_phase": same_crop and first.parameters["seed"] == second.parameters["seed"],
+        "same_phase": same_inputs and _same_phase(first, second),
         "base": f"/compare/{first.id}/{second.id}",
         "view": "side" if view == "steps" else view,
         "tiles": tiles,
@@ -180,22 +182,19 @@ def compare(
     if unfinished is not None:
         context |= _common(service, unfinished, token) | {"unfinished": True, "others": []}
         return render(request, "compare.html", context)
-    panes = [_pane(first, "crop", "Sample")]
-    if not same_crop:
-        panes.append(_pane(second, "crop", "Other sample"))
-    panes += [
-        _pane(
-            experiment,
-            "texture",
-            name,
-            note=f"seed {experiment.parameters['seed']}",
-            page=f"/experiments/{experiment.id}",
-        )
-        for experiment, name in zip(both, names, strict=True)
-    ]
+    panes = crop_panes(first)
+    if not same_inputs:
+        panes += crop_panes(second, "other sample")
+    panes += [texture_pane(run, note=f"seed {run.parameters['seed']}", page=_page(run)) for run in both]
     told = [dict(_rows(experiment)) for experiment in both]
     rows = [(name, [values.get(name, "–") for values in told]) for name in told[0] | told[1]]
-    return render(request, "compare.html", context | {"panes": panes, "experiments": both, "rows": rows})
+    context |= {"panes": panes, "experiments": both, "rows": rows, "seamless": all(map(_seamless, both))}
+    return render(request, "compare.html", context)
+
+
+def _same_phase(first: Experiment, second: Experiment) -> bool:
+    driven = all(method(experiment.method).phase for experiment in (first, second))
+    return driven and all(first.parameters[name] == second.parameters[name] for name in SHARED)
 
 
 @router.post("/experiments/{experiment_id}/again")

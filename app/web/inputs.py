@@ -119,7 +119,7 @@ def typed_query(values: Mapping[str, str], method: Method) -> dict[str, str]:
 
 def read_inputs(
     sample: Sample, method: Method, choices: Choices, values: Mapping[str, str], errors: dict[str, str]
-) -> dict[int, tuple[Sample, NewInput]]:
+) -> dict[int, NewInput]:
     """Read the inputs that a method takes out of a submitted form, by number; what is wrong goes into ``errors``.
 
     An optional one without a sample is left out; a further one's crop that is left empty is the one to start with.
@@ -135,7 +135,7 @@ def read_inputs(
         empty = number > 1 and not any(numbers)
         crop = choices.start(found) if empty else _crop(found, numbers, f"{prefix(number)}crop", errors)
         if crop is not None:
-            read[number] = found, NewInput(found.id, crop)
+            read[number] = NewInput(found.id, crop)
     return read
 
 

@@ -49,7 +49,7 @@ class MethodForm:
     """One method of the form.
 
     ``takes`` are the numbers of its inputs; ``follows`` says that its texture is as large as the first crop unless
-    asked otherwise; ``open`` that something under "advanced" is not as usual.
+    asked otherwise, and not as the method finds right; ``open`` that something under "advanced" is not as usual.
     """
 
     method: Method

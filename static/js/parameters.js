@@ -19,12 +19,11 @@ const numbers = (fields) => ["x", "y", "width", "height"].map((side) => fields[s
 const own = (method) => [...form.elements].filter((entry) => entry.name.startsWith(`${method}.`));
 
 function followCrop() {
-  const follows = "follows" in radio().dataset; // else the service knows how large the texture is to be
-  if (size.value !== "free") {
-    const factor = Number(size.value);
-    width.value = follows ? Math.floor(Number(crop.width.value) * factor + 0.5) : "";
-    height.value = follows ? Math.floor(Number(crop.height.value) * factor + 0.5) : "";
-  }
+  const follows = "follows" in radio().dataset; // else the method itself finds how large its texture is to be
+  size.options[0].textContent = follows ? "the crop’s" : "the method’s";
+  const grown = (side) => Math.floor(Number(crop[side].value) * Number(size.value) + 0.5);
+  const known = follows || size.value !== "1";
+  if (size.value !== "free") [width.value, height.value] = known ? [grown("width"), grown("height")] : ["", ""];
   const [w, h] = [width.value || (follows && crop.width.value), height.value || (follows && crop.height.value)];
   const name = document.querySelector(`[for=method-${chosen()}]`).textContent;
   total.textContent = w && h ? `${name}, ${w} × ${h} pixels` : name;

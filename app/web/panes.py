@@ -1,0 +1,117 @@
+"""The pictures of an experiment as its page shows them, with what was measured of each."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from app.errors import NotFoundError
+from app.experiments.model import Experiment, Output
+from app.web.inputs import ORDINALS
+from app.web.templating import label
+
+
+@dataclass(frozen=True)
+class Pane:
+    """One picture; ``page`` is where its title leads, ``delta`` its structure index where that is known."""
+
+    title: str
+    url: str
+    width: int
+    height: int
+    note: str = ""
+    page: str = ""
+    delta: float | None = None
+
+
+def crop_panes(experiment: Experiment, word: str = "sample") -> list[Pane]:
+    """Every input's crop."""
+    deltas = _deltas(experiment, "inputs")
+    return [
+        _pane(experiment, _output(experiment, name), title, delta=deltas[index] if index < len(deltas) else None)
+        for index, (name, title) in enumerate(zip(_crop_names(experiment), input_titles(experiment, word), strict=True))
+    ]
+
+
+def texture_pane(experiment: Experiment, note: str = "", page: str = "") -> Pane:
+    """The texture itself."""
+    output = _output(experiment, "texture")
+    delta = _texture_deltas(experiment).get("texture")
+    return _pane(experiment, output, label(experiment.method), note=note, page=page, delta=delta)
+
+
+def gallery(experiment: Experiment) -> list[Pane]:
+    """The textures that were synthesised beside the main one."""
+    deltas = _texture_deltas(experiment)
+    return [
+        _pane(experiment, output, output.title, delta=deltas.get(output.name))
+        for output in experiment.outputs
+        if output.kind == "texture" and output.name != "texture"
+    ]
+
+
+def steps(experiment: Experiment) -> list[Pane]:
+    """What led to the texture, with it and without the rest of the gallery."""
+    return [
+        _pane(experiment, output, output.title)
+        for output in experiment.outputs
+        if output.listed and (output.kind == "view" or output.name == "texture")
+    ]
+
+
+def input_titles(experiment: Experiment, word: str = "sample") -> list[str]:
+    """Name every input: the sample, or the first sample and the others.
+
+    Where one word more is said, as in "other sample", it stands in front.
+    """
+    count = len(experiment.inputs)
+    titles = [word] if count == 1 else [f"{ordinal} {word}" for ordinal in ORDINALS[:count]]
+    return [f"{title[0].upper()}{title[1:]}" for title in titles]
+
+
+def facts(experiment: Experiment) -> Iterator[tuple[str, str]]:
+    """What the method found out, as (title, value with its unit)."""
+    found = experiment.diagnostics.get("facts", [])
+    titles = {output.name: output.title for output in experiment.outputs}
+    several = len({fact["output"] for fact in found}) > 1
+    for fact in found:
+        about = titles.get(fact["output"], fact["output"])
+        title = f"{about}: {fact['title'][0].lower()}{fact['title'][1:]}" if several else fact["title"]
+        yield title, f"{_number(fact['value'])} {fact['unit']}".rstrip()
+
+
+def _number(value: float) -> str:
+    """Write a number with as many digits as people read.
+
+    Examples
+    --------
+    >>> [_number(value) for value in (12.0, 0.123456, 12345.6, -0.00001234)]
+    ['12', '0.1235', '12,346', '-1.234e-05']
+    """
+    return f"{value:,.0f}" if abs(value) >= 1000 or value == round(value) else f"{value:.4g}"
+
+
+def _crop_names(experiment: Experiment) -> list[str]:
+    return ["crop", *(f"crop-{number}" for number in range(2, len(experiment.inputs) + 1))]
+
+
+def _output(experiment: Experiment, name: str) -> Output:
+    output = experiment.output(name)
+    if output is None:
+        raise NotFoundError(f"The experiment {experiment.id} has no picture “{name}”.")
+    return output
+
+
+def _pane(
+    experiment: Experiment, output: Output, title: str, *, note: str = "", page: str = "", delta: float | None = None
+) -> Pane:
+    url = f"/api/v1/experiments/{experiment.id}/outputs/{output.name}"
+    return Pane(title, url, output.width, output.height, note, page, delta)
+
+
+def _deltas(experiment: Experiment, part: str) -> list[float]:
+    """The structure indices; experiments of the first version have none."""
+    return list(experiment.diagnostics.get("structure", {}).get(part, []))
+
+
+def _texture_deltas(experiment: Experiment) -> dict[str, float]:
+    names = [output.name for output in experiment.outputs if output.kind == "texture"]
+    return dict(zip(names, _deltas(experiment, "outputs"), strict=False))
