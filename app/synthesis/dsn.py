@@ -183,12 +183,14 @@ def excess_kurtosis(spot: Spot) -> NDArray[np.float64]:
 
     0 for a spot without contrast.
     """
-    pixels = spot.height * spot.width
-    values = spot.planes.astype(np.float64)
-    mean = values.sum(axis=(1, 2)) / pixels
-    values -= mean[:, None, None]
-    around = pixels - values[0].size  # pixels outside the rectangle, where the spot less its mean is 0 − mean
-    values *= values
-    second = (values.sum(axis=(1, 2)) + around * mean**2) / pixels
-    fourth = ((values**2).sum(axis=(1, 2)) + around * mean**4) / pixels
-    return np.where(second > 0, fourth / np.where(second > 0, second, 1) ** 2 - 3, 0)
+    pixels, found = spot.height * spot.width, []
+    for plane in spot.planes:
+        # Outside its rectangle the spot less its mean over the image is −mean.
+        mean, around = float(plane.sum(dtype=np.float64)) / pixels, pixels - plane.size
+        square = plane - np.float32(mean)
+        square *= square
+        second = (float(square.sum(dtype=np.float64)) + around * mean**2) / pixels
+        square *= square
+        fourth = (float(square.sum(dtype=np.float64)) + around * mean**4) / pixels
+        found.append(fourth / second**2 - 3 if second else 0.0)
+    return np.array(found)
