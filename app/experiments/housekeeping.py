@@ -10,7 +10,7 @@ from app.errors import DeletedError, NotFoundError
 from app.experiments.cache import FileCache
 from app.experiments.model import Experiment
 from app.experiments.ports import BlobStore, ExperimentStore
-from app.gallery.identity import is_exhibit
+from app.gallery.exhibits import exhibits
 
 log = logging.getLogger(__name__)
 
@@ -100,8 +100,9 @@ class Housekeeping:
         now = datetime.now(UTC)
         stale = self._delete_all(self._store.transient_before(now - self._longest_run))
         if older_than is not None:
+            shown = exhibits()
             finished = self._store.finished_before(now - older_than)
-            stale += self._delete_all(name for name in finished if not is_exhibit(name))
+            stale += self._delete_all(name for name in finished if name not in shown)
         samples = self._store.remove_unused_samples(now - self._sample_keep)
         files = self._remove_files(self._blobs.digests())
         files += self._blobs.remove_temporary(now - self._longest_run)

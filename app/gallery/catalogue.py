@@ -19,7 +19,7 @@ def _pair(title: str, sample: str, crop: str, note: str) -> Pair:
 
 
 SUCCESSES = (
-    _pair("Sand", "sand_desert009", "256,256,512,512", "Ripples keep their direction, their distance and their light."),
+    _pair("Sand", "sand_desert009", "128,64,512,512", "Ripples keep their direction, their distance and their light."),
     _pair(
         "Gravel",
         "ballast_railway",
@@ -36,7 +36,7 @@ SUCCESSES = (
         "0,0,256,256",
         "A drawing, for no photograph here shows paint. Its beads are flattened on top, which the texture forgets.",
     ),
-    _pair("Wood", "planks_floor_wood01", "132,60,58,126", "The grain of a single board, between its joints."),
+    _pair("Wood", "planks_floor_wood01", "132,84,56,112", "The grain of a single board, between its joints."),
     _pair("Fabric", "towel_white", "96,96,256,256", "Terry cloth: rows of loops, regular but not strictly so."),
     _pair(
         "Coloured fabric",
@@ -44,8 +44,7 @@ SUCCESSES = (
         "96,96,256,256",
         "All three channels are given the same phase: no false colours.",
     ),
-    _pair("Clouds", "sky_clouds", "740,180,200,200", "What has no contours anywhere has hardly a phase to lose."),
-    _pair("Paper", "paper_mamurk_a1", "224,128,256,256", "Relief under a light from the side, which stays there."),
+    _pair("Clouds", "sky_clouds", "640,192,192,192", "What has no contours anywhere has hardly a phase to lose."),
 )
 
 FAILURES = (
@@ -67,12 +66,6 @@ FAILURES = (
         "wall_stained",
         "250,330,200,150",
         "A crack is thin, dark and rare; its energy is spread over everything.",
-    ),
-    _pair(
-        "Paving",
-        "crazy_paving001",
-        "80,80,256,256",
-        "Large even stones, each with a contour: nothing of it is Gaussian.",
     ),
     _pair(
         "A gradient",

@@ -33,14 +33,3 @@ def identifier(exhibit: Exhibit) -> str:
     content = [exhibit.method, [list(source) for source in exhibit.inputs], params.model_dump(mode="json")]
     digest = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
     return f"{PREFIX}{digest[:DIGITS]}"
-
-
-def is_exhibit(experiment_id: str) -> bool:
-    """Whether an experiment is one of the program's own.
-
-    Examples
-    --------
-    >>> is_exhibit("figure-0123456789abcdef"), is_exhibit("SIv4VkTnHE1Rd9Zx")
-    (True, False)
-    """
-    return experiment_id.startswith(PREFIX) and len(experiment_id) == len(PREFIX) + DIGITS

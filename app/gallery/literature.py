@@ -6,11 +6,12 @@ from app.methods.explanation import Exhibit, Figure, Reference
 from app.methods.references import RANDOM_PHASE_TEXTURES
 
 GRAVEL = (("gravel_gray", "96,96,256,256"),)
+SMALL_GRAVEL = (("gravel_gray", "96,96,80,80"),)
 GRANITE = (("rockface_pink", "190,60,256,256"),)
 SINUSOIDS = (("two_sinusoids", "0,0,256,256"),)
 PLASTER = (("lit_plaster", "0,0,256,256"),)
-TOWEL = (("towel_white", "96,96,256,256"),)
 TEXTURE = ("texture",)
+PAIR = ("crop", "texture")
 
 
 @dataclass(frozen=True)
@@ -29,8 +30,8 @@ FIGURES = (
         4,
         Figure(
             "Discrete spot noise of growing order",
-            "A disc is thrown $n$ times at random. With ten one counts them; with a hundred thousand there is a texture, "
-            "which cannot be told from the limit, the ADSN, on the right.",
+            "A disc is thrown $n$ times at random. With ten one counts them; with a hundred thousand there is a "
+            "texture, which cannot be told from the limit, the ADSN, on the right.",
             (
                 Exhibit(
                     "dsn",
@@ -50,7 +51,7 @@ FIGURES = (
             "Rayleigh numbers besides, and may favour one of them: compare the three seeds. On a photograph, with "
             "thousands of frequencies, one does not see that.",
             (
-                Exhibit("rpn", SINUSOIDS, {"seed": 1}, ("crop", "texture"), "sample and RPN"),
+                Exhibit("rpn", SINUSOIDS, {"seed": 1}, PAIR),
                 *(Exhibit("adsn", SINUSOIDS, {"seed": seed}, TEXTURE, f"ADSN, seed {seed}") for seed in (1, 2, 3)),
             ),
         ),
@@ -66,10 +67,27 @@ FIGURES = (
             tuple(
                 Exhibit("rpn", ((sample, crop),), {"seed": 1, "phase": phase}, show, label)
                 for sample, crop in (("leaves_forest_floor", "256,256,256,256"), ("lichen_rock_gray", "190,40,256,256"))
-                for phase, show, label in (
-                    ("add", ("crop", "texture"), "sample and RPN"),
-                    ("replace", TEXTURE, "wrong RPN"),
-                )
+                for phase, show, label in (("add", PAIR, "RPN"), ("replace", TEXTURE, "Wrong RPN"))
+            ),
+        ),
+    ),
+    LiteratureFigure(
+        "periodic-component",
+        8,
+        Figure(
+            "What the periodic component is for",
+            "Plaster under a light from the right (a drawing): opposite borders do not fit together, and for the "
+            "Fourier transform, which sees the crop repeated, that is an edge. Randomised, it comes back as stripes "
+            "all over. In the periodic component the jump is gone, taken up by the smooth component.",
+            (
+                Exhibit(
+                    "rpn",
+                    PLASTER,
+                    {"seed": 1},
+                    ("crop", "periodic", "smooth", "texture"),
+                    "RPN of the periodic component",
+                ),
+                Exhibit("rpn", PLASTER, {"seed": 1, "periodic": False}, TEXTURE, "RPN of the crop itself"),
             ),
         ),
     ),
@@ -87,7 +105,6 @@ FIGURES = (
                     GRANITE,
                     {"width": 512, "height": 512, "alpha": 0.2, "window": "gaussian", "seed": 1},
                     ("crop", "spot", "texture"),
-                    "sample, extended spot, RPN",
                 ),
                 Exhibit("rpn", GRANITE, {"seed": 1}, TEXTURE, "RPN, not extended"),
             ),
@@ -98,8 +115,8 @@ FIGURES = (
         11,
         Figure(
             "RPN and ADSN at one phase",
-            "Every row has one random phase. Their moduli differ by a factor that is random at every frequency, but one "
-            "has to look for the difference: the two models are one class of texture to the eye.",
+            "Every sample has one random phase for both. Their moduli differ by a factor that is random at every "
+            "frequency, but one has to look for the difference: the two models are one class of texture to the eye.",
             tuple(
                 Exhibit(method, ((sample, crop),), {"seed": 1}, show, label)
                 for sample, crop in (
@@ -107,7 +124,37 @@ FIGURES = (
                     ("towel_red", "96,96,256,256"),
                     ("concrete_img_0572", "128,64,256,256"),
                 )
-                for method, show, label in (("rpn", ("crop", "texture"), "sample and RPN"), ("adsn", TEXTURE, "ADSN"))
+                for method, show, label in (("rpn", PAIR, "RPN"), ("adsn", TEXTURE, "ADSN"))
+            ),
+        ),
+    ),
+    LiteratureFigure(
+        "windows",
+        14,
+        Figure(
+            "Growing a texture pixel by pixel, with three windows",
+            "Efros–Leung with windows of 9, 15 and 21 pixels, and RPN. Copied stones keep their contours, which RPN "
+            "dissolves; but small windows grow garbage, and large ones repeat the crop word by word: open one of them "
+            "to see its copy map. RPN does the same thing every time.",
+            (
+                Exhibit(
+                    "efros-leung",
+                    SMALL_GRAVEL,
+                    {"width": 128, "height": 128, "half_patch": 4, "seed": 1},
+                    PAIR,
+                    "window of 9",
+                ),
+                *(
+                    Exhibit(
+                        "efros-leung",
+                        SMALL_GRAVEL,
+                        {"width": 128, "height": 128, "half_patch": half, "seed": 1},
+                        TEXTURE,
+                        f"window of {2 * half + 1}",
+                    )
+                    for half in (7, 10)
+                ),
+                Exhibit("rpn", SMALL_GRAVEL, {"width": 128, "height": 128, "seed": 1}, TEXTURE),
             ),
         ),
     ),
@@ -119,7 +166,7 @@ FIGURES = (
             "Nine seeds. No two agree anywhere, and all are the same stone: whoever needs a texture may take the first "
             "one, without looking.",
             (
-                Exhibit("rpn", GRANITE, {"seed": 1}, ("crop", "texture"), "sample and seed 1"),
+                Exhibit("rpn", GRANITE, {"seed": 1}, PAIR, "seed 1"),
                 *(Exhibit("rpn", GRANITE, {"seed": seed}, TEXTURE, f"seed {seed}") for seed in range(2, 10)),
             ),
         ),
@@ -129,8 +176,8 @@ FIGURES = (
         16,
         Figure(
             "Who bears a Rayleigh noise on the modulus",
-            "Each photograph, and the same with its Fourier modulus multiplied by white Rayleigh noise, its phase kept. "
-            "A haze of stripes covers the scene and the paving; the granite bears it.",
+            "Each photograph, and the same with its Fourier modulus multiplied by white Rayleigh noise, its phase "
+            "kept. A haze of stripes covers the scene and the paving; the granite bears it.",
             tuple(
                 Exhibit("rayleigh", ((sample, crop),), {"seed": 1})
                 for sample, crop in (

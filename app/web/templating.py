@@ -22,18 +22,19 @@ TEMPLATES.env.lstrip_blocks = True
 
 
 def label(method: str) -> str:
-    """Name a method briefly, as people do: by its title's initials, by its title if that is short, or by its name.
+    """Name a method briefly, as people do: by the short part of its title that holds its name, or by its name.
 
     Examples
     --------
     >>> label("rpn"), label("rayleigh"), label("heeger-bergen")
     ('RPN', 'Rayleigh', 'Heeger–Bergen')
     """
-    title, _, _ = METHODS[method].title.partition(" (")
-    words = re.split(r"\W+", title.lower())
-    if f"({method.upper()})" in METHODS[method].title:
-        return method.upper()
-    return title if len(words) <= 3 and set(method.split("-")) <= set(words) else method.replace("-", " ").capitalize()
+    head, _, tail = METHODS[method].title.partition(" (")
+    for part in (tail.removesuffix(")"), head):
+        words = re.split(r"\W+", part.lower())
+        if len(words) <= 3 and set(method.split("-")) <= set(words):
+            return part
+    return method.replace("-", " ").capitalize()
 
 
 def meter_place(delta: float) -> float:

@@ -1,0 +1,41 @@
+"""The methods in the order in which one would tell of them."""
+
+from dataclasses import dataclass
+
+from app.methods.model import Method
+from app.methods.registry import METHODS
+
+
+@dataclass(frozen=True)
+class Group:
+    """Methods that have an idea in common; ``text`` says which."""
+
+    title: str
+    text: str
+    names: tuple[str, ...]
+
+    @property
+    def methods(self) -> tuple[Method, ...]:
+        """Those of them that are registered."""
+        return tuple(METHODS[name] for name in self.names if name in METHODS)
+
+
+GROUPS = (
+    Group(
+        "Random phase and Gaussian models",
+        "All they know of a sample is its mean and its Fourier modulus. They give a texture of any size at once, and "
+        "without fail; of a micro-texture it is the right one.",
+        ("rpn", "adsn", "dsn", "texton", "mix"),
+    ),
+    Group(
+        "Spectra explained",
+        "What of a picture is in its modulus, and what in its phase: experiments on photographs rather than textures.",
+        ("modulus-phase", "rayleigh"),
+    ),
+    Group(
+        "Beyond the phase",
+        "A pyramid matches how the values of sub-bands are distributed, which brings some contours back. Copying the "
+        "sample pixel by pixel needs no model at all: structure is kept, and so are whole pieces of the sample.",
+        ("heeger-bergen", "efros-leung"),
+    ),
+)

@@ -1,0 +1,117 @@
+"""Exhibits as pages show them: the pictures of an experiment that is made, or what stands in for those that are not."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any
+from urllib.parse import urlencode
+
+from app.errors import AppError
+from app.experiments.model import Experiment, Status
+from app.experiments.service import Service
+from app.images.crop import Rectangle
+from app.methods.explanation import Exhibit, Figure
+from app.web.drafts import address
+from app.web.templating import label
+
+MOST_IN_A_ROW = 7
+
+
+@dataclass(frozen=True)
+class Shown:
+    """One picture; ``url`` is empty for one that is being made, and ``change`` for all but an exhibit's last."""
+
+    caption: str
+    url: str
+    page: str
+    width: int
+    height: int
+    change: str = ""
+    crop: tuple[str, int, int, Rectangle] | None = None
+    delta: float | None = None
+    state: str = ""
+
+
+def change_url(experiment: Experiment) -> str:
+    """The form of its sample, filled in as the experiment says."""
+    return f"/samples/{experiment.inputs[0].sample}?{urlencode(address(experiment), safe=',')}"
+
+
+def shown(service: Service, exhibit: Exhibit) -> list[Shown]:
+    """The pictures of one exhibit, in its order."""
+    made = service.catalogue.find(exhibit)
+    if made is None or made.status is not Status.SUCCEEDED:
+        return _standing_in(service, exhibit, made)
+    change = change_url(made)
+    deltas = _deltas(made)
+    found = [output for name in exhibit.show if (output := made.output(name)) is not None]
+    return [
+        Shown(
+            caption=_caption(exhibit, output.name, output.title, first=output is found[0]),
+            url=f"/api/v1/experiments/{made.id}/outputs/{output.name}",
+            page=f"/experiments/{made.id}",
+            width=output.width,
+            height=output.height,
+            change=change if output is found[-1] else "",
+            delta=deltas.get(output.name),
+        )
+        for output in found
+    ]
+
+
+def figure_view(service: Service, figure: Figure) -> dict[str, Any]:
+    """What the macro `figure` of ``_partials/figure.html`` takes."""
+    pictures = [picture for exhibit in figure.exhibits for picture in shown(service, exhibit)]
+    alike = len({picture.width for picture in pictures}) == 1
+    columns = _columns([len(exhibit.show) for exhibit in figure.exhibits if "crop" in exhibit.show], len(pictures))
+    return {"figure": figure, "pictures": pictures, "layout": f"of-{columns}" if alike else "mixed"}
+
+
+def _columns(groups: Iterable[int], count: int) -> int:
+    """Pictures of one row: all of them if they fit, else so that every row starts with a sample, else half of them."""
+    if count <= MOST_IN_A_ROW:
+        return count
+    starts = len(list(groups))
+    if starts > 1 and count % starts == 0:
+        return count // starts
+    return min(MOST_IN_A_ROW, -(-count // 2))
+
+
+def _caption(exhibit: Exhibit, name: str, title: str, *, first: bool) -> str:
+    if name == "texture":
+        return exhibit.label or label(exhibit.method)
+    words = "Sample" if name == "crop" else title
+    return f"{words}, {exhibit.label}" if first and exhibit.label and "texture" not in exhibit.show else words
+
+
+def _deltas(experiment: Experiment) -> dict[str, float]:
+    """The structure index of the first crop and of the texture, by output; empty where it was not measured."""
+    structure = experiment.diagnostics.get("structure", {})
+    pairs = (("crop", structure.get("inputs")), ("texture", structure.get("outputs")))
+    return {name: values[0] for name, values in pairs if values}
+
+
+def _standing_in(service: Service, exhibit: Exhibit, made: Experiment | None) -> list[Shown]:
+    """The sample's crop, where it is on show, and one place for all that is not there yet."""
+    try:
+        experiment = service.catalogue.prepared(exhibit)
+    except AppError as error:  # a sample that is not in yet
+        return [Shown(label(exhibit.method), "", "", 256, 256, state=error.message)]
+    page = f"/experiments/{made.id}" if made is not None else ""
+    size = experiment.parameters["width"], experiment.parameters["height"]
+    texture = Shown(
+        exhibit.label or label(exhibit.method), "", page, *size, change=change_url(experiment), state=_state(made)
+    )
+    return [*(_crops(service, experiment) if "crop" in exhibit.show else ()), texture]
+
+
+def _crops(service: Service, experiment: Experiment) -> Iterator[Shown]:
+    source = experiment.inputs[0]
+    sample = service.sample(source.sample)
+    crop = (sample.id, sample.width, sample.height, source.crop)
+    yield Shown("Sample", "", f"/samples/{sample.id}", source.crop.width, source.crop.height, crop=crop)
+
+
+def _state(made: Experiment | None) -> str:
+    if made is None:
+        return "Not made yet"
+    return "Being made" if not made.status.finished else made.error or "It was cancelled."

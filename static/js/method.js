@@ -1,0 +1,5 @@
+// A method page.
+
+import { offerCopies } from "./copy.js";
+
+offerCopies(document);
