@@ -105,6 +105,7 @@ def run(sources: Sequence[Source], params: HeegerBergenParams, context: Context)
     check([Size(width, height, channels)], params)
     refuse_infinite(sources)
     height, width = params.height or height, params.width or width
+    context.progress("sample", 0.0)
     decomposition = Decomposition(params.scales, params.orientations, params.edges)
     pyramid = SteerablePyramid(height, width, params.scales, params.orientations)
     ends = {"sample": 0.1, "noise": 0.14}

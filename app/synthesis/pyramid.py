@@ -34,7 +34,6 @@ from numpy.typing import NDArray
 
 Complex = NDArray[np.complex64]
 Real = NDArray[np.float32]
-Double = NDArray[np.float64]
 
 
 class Band(NamedTuple):
@@ -133,27 +132,29 @@ class SteerablePyramid:
             window = _cosine(np.minimum(t - 1, 0) if band.scale == 0 else np.maximum(t, 0))
             return Filter(window.astype(np.complex64), shape)
         angle, order = math.pi * band.orientation / self.orientations, self.orientations - 1
-        ramp = (y * math.sin(angle)).astype(np.float32)[:, None] + (x * math.cos(angle)).astype(np.float32)
+        ramp = (y * math.sin(angle))[:, None] + x * math.cos(angle)
         oriented = self._radial[band.scale].copy()
         for _ in range(order):
             oriented *= ramp
         return Filter(oriented * np.complex64((-1j) ** order), shape)
 
-    def _axes(self, scale: int) -> tuple[Double, Double]:
+    def _axes(self, scale: int) -> tuple[Real, Real]:
         """Frequencies along y and x of a scale's part of the half spectrum, in units of its centre, 2^−(s+1)."""
         height, width = self.shape(Band(scale, None))
         k = np.arange(height)
         k[(height + 1) // 2 :] -= height
-        unit = 2.0 ** (scale + 2)
-        return unit * k / self._height, unit * np.arange(width // 2 + 1) / self._width
+        y, x = 2.0 ** (scale + 2) * k / self._height, 2.0 ** (scale + 2) * np.arange(width // 2 + 1) / self._width
+        return y.astype(np.float32), x.astype(np.float32)
 
     def _radial_window(self, scale: int) -> Real:
         """√κ B_s(r) / r^q, since r^q cos^q(θ − φ) is the q-th power of a linear function of the frequency."""
         order = self.orientations - 1
         kappa = 2 ** (2 * order) * math.factorial(order) ** 2 / (self.orientations * math.factorial(2 * order))
         t = _log_radius(*self._axes(scale))
-        window: Double = math.sqrt(kappa) * _cosine(t) * 2.0 ** (-order * np.maximum(t, -1))
-        return window.astype(np.float32)
+        window = np.exp2(-order * np.maximum(t, -1))
+        window *= math.sqrt(kappa)
+        window *= _cosine(t)
+        return window
 
 
 class Total:
@@ -180,12 +181,12 @@ class Total:
             return total
 
 
-def _log_radius(y: Double, x: Double) -> Double:
+def _log_radius(y: Real, x: Real) -> Real:
     """log₂ of the distance from the origin, where it is −∞."""
     with np.errstate(divide="ignore"):
         return np.asarray(np.log2(y[:, None] ** 2 + x**2) / 2)
 
 
-def _cosine(t: Double) -> Double:
+def _cosine(t: Real) -> Real:
     """c(t) = cos(π t / 2) on [−1, 1], 0 outside."""
-    return np.asarray(np.cos(np.pi / 2 * np.clip(t, -1, 1)))
+    return np.asarray(np.cos(np.float32(np.pi / 2) * np.clip(t, -1, 1)))
