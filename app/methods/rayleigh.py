@@ -38,10 +38,12 @@ def run(sources: Sequence[Source], params: StillParams, context: Context) -> Ite
 
     progress = context.between(0, 0.25)
     z = rayleigh(h, height, width, seed=params.seed, threads=context.threads, progress=progress)
+    context.progress("periodic", 0.25)
     p = periodic_component(centre(h, height, width), context.threads)
+    context.progress("correlation", 0.3)
     fact = Fact("correlation", "Correlation with the periodic component", _correlation(p, z))
     yield encode("texture", "Rayleigh noise on the modulus", z, peak, context, kind="texture", facts=(fact,))
-    context.progress("periodic", 0.3)
+    context.progress("pictures", 0.33)
     yield from crops(sources, context)
     yield encode("periodic", "Periodic component", p, peak, context)
     for name, title, begin in (("rpn", "RPN of the crop", 0.35), ("adsn", "The same with Rayleigh noise: ADSN", 0.6)):
@@ -66,9 +68,12 @@ def _as_one_stage(name: str, progress: Progress) -> Progress:
 
 def _correlation(p: Real, z: Real) -> float:
     """Over all pixels and channels, each channel about its own mean; 1 for an image without contrast."""
-    p, z = p - p.mean((0, 1)), z - z.mean((0, 1))
-    scale = float(np.sqrt(np.square(p).mean(dtype=np.float64) * np.square(z).mean(dtype=np.float64)))
-    return float(np.multiply(p, z).mean(dtype=np.float64)) / scale if scale else 1.0
+    products = np.zeros(3)
+    for channel in range(p.shape[2]):
+        one, other = (image[:, :, channel] - image[:, :, channel].mean(dtype=np.float64) for image in (p, z))
+        products += [np.mean(pair[0] * pair[1]) for pair in ((one, other), (one, one), (other, other))]
+    scale = float(np.sqrt(products[1] * products[2]))
+    return float(products[0]) / scale if scale else 1.0
 
 
 EXPLANATION = Explanation(

@@ -114,7 +114,7 @@ def _share(progress: Progress, number: int, count: int) -> Progress:
 def _phase(values: Complex) -> Complex:
     """A complex number over its modulus, and 1 for 0."""
     turns = values + TINY
-    turns /= np.abs(turns)
+    turns *= np.reciprocal(np.abs(turns))  # numpy divides complex numbers ten times slower than it multiplies them
     return turns
 
 

@@ -61,18 +61,18 @@ def swap(first: Real, second: Real, threads: int = 1, progress: Progress | None 
         return one[:, :, 0], other[:, :, 0]
     report = progress or (lambda stage, part: None)
     report("swap", 0)
-    made = np.empty(first.shape, np.float32), np.empty(first.shape, np.float32)
-    channels = first.shape[2]
+    height, width, channels = first.shape
+    made = np.empty((2, channels, height, width), np.float32)
     for channel in range(channels):
-        planes = [np.ascontiguousarray(image[:, :, channel]) for image in (first, second)]
+        planes = first[:, :, channel], second[:, :, channel]
         a, b = (scipy.fft.rfft2(plane, workers=threads) for plane in planes)
         report("swap", (channel + 0.4) / channels)
         spectra = _swapped(a, b, *(ROUNDING * float(np.linalg.norm(plane)) for plane in planes))
         report("swap", (channel + 0.6) / channels)
         for image, spectrum in zip(made, spectra, strict=True):
-            image[:, :, channel] = scipy.fft.irfft2(spectrum, s=first.shape[:2], overwrite_x=True, workers=threads)
+            image[channel] = scipy.fft.irfft2(spectrum, s=(height, width), overwrite_x=True, workers=threads)
         report("swap", (channel + 1) / channels)
-    return made
+    return np.moveaxis(made[0], 0, 2), np.moveaxis(made[1], 0, 2)
 
 
 def _swapped(a: Complex, b: Complex, a_floor: float, b_floor: float) -> list[Complex]:
@@ -86,9 +86,7 @@ def _swapped(a: Complex, b: Complex, a_floor: float, b_floor: float) -> list[Com
 def _with_modulus(spectrum: Complex, modulus: Real) -> Complex:
     own = np.abs(spectrum)
     own[own == 0] = 1
-    made = spectrum / own
-    made *= modulus
-    return made.astype(np.complex64, copy=False)
+    return spectrum * (modulus / own)  # numpy divides complex numbers ten times slower than it multiplies them
 
 
 def power(planes: Real, threads: int = 1) -> Real:

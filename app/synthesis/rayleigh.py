@@ -73,13 +73,14 @@ def rayleigh(
     if h.shape[:2] != (height, width):
         raise ValueError("The image has no phase to keep beyond its own size.")
     noise = np.abs(random_spectrum(height, width, seed, rayleigh=True))
-    z = np.empty(h.shape, np.float32)
+    z = np.empty((h.shape[2], height, width), np.float32)
     smooths = SmoothSpectrum(h).block(0, width // 2 + 1)
-    for channel in range(h.shape[2]):
-        spectrum = scipy.fft.rfft2(np.ascontiguousarray(h[:, :, channel]), workers=threads)
-        spectrum -= next(smooths)
-        report("rayleigh noise", (channel + 0.5) / h.shape[2])
+    for channel, smooth in enumerate(smooths):
+        spectrum = scipy.fft.rfft2(h[:, :, channel], workers=threads)
+        report("rayleigh noise", (channel + 0.4) / h.shape[2])
+        spectrum -= smooth
         spectrum *= noise
-        z[:, :, channel] = scipy.fft.irfft2(spectrum, s=(height, width), overwrite_x=True, workers=threads)
+        report("rayleigh noise", (channel + 0.6) / h.shape[2])
+        z[channel] = scipy.fft.irfft2(spectrum, s=(height, width), overwrite_x=True, workers=threads)
         report("rayleigh noise", (channel + 1) / h.shape[2])
-    return z
+    return np.moveaxis(z, 0, 2)
