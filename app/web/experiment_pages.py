@@ -22,7 +22,7 @@ from app.web.deps import ServiceDep, TokenDep, base_url, remember_owner
 from app.web.drafts import address
 from app.web.forms import SHARED
 from app.web.inputs import most
-from app.web.panes import crop_panes, facts, gallery, input_titles, steps, texture_pane
+from app.web.panes import crop_panes, facts, gallery, input_titles, steps, texture_pane, tiling
 from app.web.snippets import snippets
 from app.web.templating import label, render
 
@@ -68,7 +68,7 @@ def experiment_page(
             "downloads": list(_downloads(experiment)),
             "timings": list(_timings(experiment)),
             "total": f"{sum(experiment.timings.values()):.2f} s",
-            "seamless": _seamless(experiment),
+            "tiling": tiling([_seamless(experiment)]),
             "snippets": snippets(experiment, base),
         }
     return render(request, "experiment.html", context)
@@ -116,7 +116,8 @@ def _rows(experiment: Experiment) -> Iterator[tuple[str, str]]:
     words = {True: "yes", False: "no"}
     for entry in fields(method(experiment.method).params):
         value = experiment.parameters.get(entry.name)
-        yield entry.label, words[value] if isinstance(value, bool) else str(value)
+        empty = value is None or value == ""
+        yield entry.label, "–" if empty else words[value] if isinstance(value, bool) else str(value)
 
 
 def _downloads(experiment: Experiment) -> Iterator[tuple[str, str]]:
@@ -188,7 +189,7 @@ def compare(
     panes += [texture_pane(run, note=f"seed {run.parameters['seed']}", page=_page(run)) for run in both]
     told = [dict(_rows(experiment)) for experiment in both]
     rows = [(name, [values.get(name, "–") for values in told]) for name in told[0] | told[1]]
-    context |= {"panes": panes, "experiments": both, "rows": rows, "seamless": all(map(_seamless, both))}
+    context |= {"panes": panes, "experiments": both, "rows": rows, "tiling": tiling([_seamless(run) for run in both])}
     return render(request, "compare.html", context)
 
 

@@ -1,6 +1,6 @@
 """The pictures of an experiment as its page shows them, with what was measured of each."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from app.errors import NotFoundError
@@ -55,6 +55,21 @@ def steps(experiment: Experiment) -> list[Pane]:
         for output in experiment.outputs
         if output.listed and (output.kind == "view" or output.name == "texture")
     ]
+
+
+def tiling(seamless: Sequence[bool]) -> str:
+    """Say of one texture, or of several, whether they tile."""
+    several = len(seamless) > 1
+    if all(seamless):
+        which = "These textures are" if several else "The texture is"
+        return (
+            f"{which} toroidal: the left edge continues at the right edge and the top at the bottom, so that it "
+            "tiles without a seam."
+        )
+    if several and any(seamless):
+        return "Only one of the two textures is toroidal: the edges of the other do not meet."
+    which = "these textures" if several else "this texture"
+    return f"Not toroidal: like the sample’s, the edges of {which} do not meet, and a seam shows where they touch."
 
 
 def input_titles(experiment: Experiment, word: str = "sample") -> list[str]:

@@ -20,12 +20,22 @@ def snippets(experiment: Experiment, base_url: str) -> tuple[tuple[str, str], ..
     base_url : str
         The service's public address, without a slash at its end.
     """
-    image = f"{base_url}/api/v1/samples/{experiment.inputs[0].sample}/image"
+    files = _files(experiment)
+    fetch = "".join(
+        f"curl -fsS -o {name} {shlex.quote(f'{base_url}/api/v1/samples/{sample}/image')}\n"
+        for sample, name in files.items()
+    )
     return (
-        ("curl", _curl(experiment, base_url, image)),
-        ("Command line", _command(experiment, image)),
+        ("curl", fetch + _curl(experiment, base_url, files)),
+        ("Command line", fetch + _command(experiment, files)),
         ("Python", _python(experiment, base_url)),
     )
+
+
+def _files(experiment: Experiment) -> dict[str, str]:
+    """Name a file for each sample, by its id; a sample of which there are two crops is fetched once."""
+    ids = dict.fromkeys(source.sample for source in experiment.inputs)
+    return {sample: "sample.png" if number == 1 else f"sample-{number}.png" for number, sample in enumerate(ids, 1)}
 
 
 def _said(parameters: dict[str, Any]) -> dict[str, Any]:
@@ -36,29 +46,31 @@ def _form(value: Any) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
-def _curl(experiment: Experiment, base_url: str, image: str) -> str:
-    entries = {"method": experiment.method, "crop": experiment.inputs[0].crop, **_said(dict(experiment.parameters))}
+def _curl(experiment: Experiment, base_url: str, files: dict[str, str]) -> str:
+    entries: dict[str, Any] = {"method": experiment.method}
+    for number, source in enumerate(experiment.inputs, 1):
+        suffix = "" if number == 1 else f"-{number}"
+        entries |= {f"file{suffix}": f"@{files[source.sample]}", f"crop{suffix}": source.crop}
+    entries |= _said(dict(experiment.parameters))
     words = [f"-F {shlex.quote(f'{name}={_form(value)}')}" for name, value in entries.items()]
     address = shlex.quote(f"{base_url}/api/v1/synthesize")
-    return f"{_fetch(image)}\n" + _wrapped(["curl -fsS -o texture.png", address, "-F file=@sample.png", *words])
+    return _wrapped(["curl -fsS -o texture.png", address, *words])
 
 
-def _command(experiment: Experiment, image: str) -> str:
+def _command(experiment: Experiment, files: dict[str, str]) -> str:
     parameters = _said(dict(experiment.parameters))
     size = f"{parameters.pop('width')}x{parameters.pop('height')}"
-    words = ["microtexture synthesize sample.png texture.png", f"--method {experiment.method}"]
-    words += [f"--crop {experiment.inputs[0].crop}", f"--size {size}"]
+    names = " ".join(files[source.sample] for source in experiment.inputs)
+    words = [f"microtexture synthesize {names} texture.png", f"--method {experiment.method}"]
+    words += [f"--crop {source.crop}" for source in experiment.inputs]
+    words.append(f"--size {size}")
     for name, value in parameters.items():
         option = name.replace("_", "-")
         if isinstance(value, bool):
             words.append(f"--{option}" if value else f"--no-{option}")
         else:
             words.append(f"--{option} {shlex.quote(str(value))}")
-    return f"{_fetch(image)}\n{_wrapped(words)}"
-
-
-def _fetch(image: str) -> str:
-    return f"curl -fsS -o sample.png {shlex.quote(image)}"
+    return _wrapped(words)
 
 
 def _wrapped(words: list[str]) -> str:
@@ -72,9 +84,10 @@ def _wrapped(words: list[str]) -> str:
 
 
 def _python(experiment: Experiment, base_url: str) -> str:
-    crop = experiment.inputs[0].crop
-    rectangle = {"x": crop.x, "y": crop.y, "width": crop.width, "height": crop.height}
-    source = f'{{"sample": {_literal(experiment.inputs[0].sample)},\n      "crop": {_literal(rectangle)}}}'
+    sources = "".join(
+        f'        {{"sample": {_literal(source.sample)},\n         "crop": {_literal(vars(source.crop))}}},\n'
+        for source in experiment.inputs
+    )
     together = f'"parameters": {_literal(_said(dict(experiment.parameters)))}'.replace(": ", f":{JOINED}")
     parameters = fill(together, WIDTH, initial_indent=" " * 4, subsequent_indent=" " * 8).replace(JOINED, " ")
     return f"""import time
@@ -84,8 +97,7 @@ import httpx
 request = {{
     "method": {_literal(experiment.method)},
     "inputs": [
-        {source.replace("      ", " " * 9)}
-    ],
+{sources}    ],
 {parameters},
     "listed": False,
 }}

@@ -91,7 +91,7 @@ export class Crop {
     const room = this.ground.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
     if (room <= 0 || !this.size.width) return; // not on the screen
     const narrow = window.matchMedia("(max-width: 960px)").matches;
-    const tall = Math.max(240, narrow ? window.innerHeight * 0.6 : window.innerHeight - 336);
+    const tall = Math.max(240, narrow ? window.innerHeight * 0.6 : window.innerHeight - 360);
     this.scale = Math.min(room / this.size.width, tall / this.size.height, LARGEST);
     this.frame.style.width = `${this.size.width * this.scale}px`;
     this.frame.style.height = `${this.size.height * this.scale}px`;
@@ -113,7 +113,7 @@ export class Crop {
     this.box.classList.toggle("tiny", width < 88 || height < 88);
     this.box.classList.toggle("low", top + height + 52 > high);
     const percent = Math.round(scale * 100);
-    this.readout.textContent = `${crop.width} × ${crop.height} of ${size.width} × ${size.height}, shown at ${percent} %`;
+    this.readout.textContent = `${crop.width} × ${crop.height} of ${size.width} × ${size.height} at ${percent} %`;
   }
 
   write(crop) {

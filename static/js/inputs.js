@@ -18,9 +18,12 @@ class Further {
     this.select.addEventListener("change", () => this.follow());
     window.addEventListener("pageshow", () => this.follow(true));
     // Closed, an optional one is not taken.
-    root.closest("details")?.addEventListener("toggle", ({ target }) => {
-      if (!target.open) this.choose("");
+    const details = root.closest("details");
+    details?.addEventListener("toggle", () => {
+      if (!details.open) this.choose("");
+      this.offerToLeave(details);
     });
+    if (details) this.offerToLeave(details);
   }
 
   /** Show what is chosen; `kept` says that the crop's numbers are its own already. */
@@ -37,6 +40,11 @@ class Further {
       if (kept && sample && before) this.crop.write(before);
     }
     for (const image of this.thumbnails) image.classList.toggle("current", image.dataset.sample === sample);
+  }
+
+  offerToLeave(details) {
+    const name = this.root.querySelector("legend").textContent.toLowerCase();
+    details.querySelector("summary").textContent = details.open ? `Leave the ${name} out` : "Add another sample";
   }
 
   thank({ credit, licence, url }) {
