@@ -70,8 +70,8 @@ def _correlation(p: Real, z: Real) -> float:
     """Over all pixels and channels, each channel about its own mean; 1 for an image without contrast."""
     products = np.zeros(3)
     for channel in range(p.shape[2]):
-        one, other = (image[:, :, channel] - image[:, :, channel].mean(dtype=np.float64) for image in (p, z))
-        products += [np.mean(pair[0] * pair[1]) for pair in ((one, other), (one, one), (other, other))]
+        one, other = (image[:, :, channel] - float(image[:, :, channel].mean(dtype=np.float64)) for image in (p, z))
+        products += [np.mean(a * b, dtype=np.float64) for a, b in ((one, other), (one, one), (other, other))]
     scale = float(np.sqrt(products[1] * products[2]))
     return float(products[0]) / scale if scale else 1.0
 
