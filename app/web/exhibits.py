@@ -1,6 +1,6 @@
 """Exhibits as pages show them: the pictures of an experiment that is made, or what stands in for those that are not."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 from urllib.parse import urlencode
@@ -13,7 +13,9 @@ from app.methods.explanation import Exhibit, Figure
 from app.web.drafts import address
 from app.web.templating import label
 
+SAMPLE = "Sample"
 MOST_IN_A_ROW = 7
+SMALL = 160  # pixels; what is smaller is shown at twice its size
 
 
 @dataclass(frozen=True)
@@ -59,27 +61,34 @@ def shown(service: Service, exhibit: Exhibit) -> list[Shown]:
 
 
 def figure_view(service: Service, figure: Figure) -> dict[str, Any]:
-    """What the macro `figure` of ``_partials/figure.html`` takes."""
-    pictures = [picture for exhibit in figure.exhibits for picture in shown(service, exhibit)]
+    """What the macro `figure` of ``_partials/figure.html`` takes: pictures by exhibit, and how to lay them out."""
+    groups = [shown(service, exhibit) for exhibit in figure.exhibits]
+    pictures = [picture for group in groups for picture in group]
     alike = len({picture.width for picture in pictures}) == 1
-    columns = _columns([len(exhibit.show) for exhibit in figure.exhibits if "crop" in exhibit.show], len(pictures))
-    return {"figure": figure, "pictures": pictures, "layout": f"of-{columns}" if alike else "mixed"}
+    if alike:
+        columns = _columns([group[0].caption == SAMPLE for group in groups], len(pictures))
+    return {
+        "figure": figure,
+        "groups": [pictures] if alike else groups,
+        "layout": f"of-{columns}" if alike else "mixed",
+        "scale": 2 if max(picture.width for picture in pictures) <= SMALL else 1,
+    }
 
 
-def _columns(groups: Iterable[int], count: int) -> int:
+def _columns(starts: Sequence[bool], count: int) -> int:
     """Pictures of one row: all of them if they fit, else so that every row starts with a sample, else half of them."""
     if count <= MOST_IN_A_ROW:
         return count
-    starts = len(list(groups))
-    if starts > 1 and count % starts == 0:
-        return count // starts
+    rows = sum(starts)
+    if rows > 1 and count % rows == 0:
+        return count // rows
     return min(MOST_IN_A_ROW, -(-count // 2))
 
 
 def _caption(exhibit: Exhibit, name: str, title: str, *, first: bool) -> str:
     if name == "texture":
         return exhibit.label or label(exhibit.method)
-    words = "Sample" if name == "crop" else title
+    words = SAMPLE if name == "crop" else title
     return f"{words}, {exhibit.label}" if first and exhibit.label and "texture" not in exhibit.show else words
 
 
@@ -108,7 +117,7 @@ def _crops(service: Service, experiment: Experiment) -> Iterator[Shown]:
     source = experiment.inputs[0]
     sample = service.sample(source.sample)
     crop = (sample.id, sample.width, sample.height, source.crop)
-    yield Shown("Sample", "", f"/samples/{sample.id}", source.crop.width, source.crop.height, crop=crop)
+    yield Shown(SAMPLE, "", f"/samples/{sample.id}", source.crop.width, source.crop.height, crop=crop)
 
 
 def _state(made: Experiment | None) -> str:
