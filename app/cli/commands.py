@@ -173,14 +173,14 @@ def application(*, with_method_options: bool) -> typer.Typer:
     app.callback()(about)
     app.command(epilog=EXIT_CODES)(serve)
     if with_method_options:
-        from app.cli.synthesize import command
+        from app.cli.synthesize import Sections, command
 
-        synthesize = command()
+        synthesize, listed = command(), Sections
     else:
-        synthesize = _nothing
-    app.command("synthesize", help="Make a texture from a photograph, without a service.", epilog=EXIT_CODES)(
-        synthesize
-    )
+        synthesize, listed = _nothing, None
+    app.command(
+        "synthesize", cls=listed, help="Make a texture from photographs, without a service.", epilog=EXIT_CODES
+    )(synthesize)
     app.command(epilog=EXIT_CODES)(methods)
     app.command(epilog=EXIT_CODES)(catalogue)
     app.command(epilog=EXIT_CODES)(prune)

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from typer.core import TyperCommand
 
 from app.cli.problems import plain_errors
 from app.cli.progress import Bar
@@ -22,11 +23,16 @@ _OWN = {
         ),
         inspect.Parameter.empty,
     ),
-    "method": (str, typer.Option(help=f"One of {', '.join(METHODS)}.", metavar="NAME"), "rpn"),
+    "method": (
+        str,
+        typer.Option(help=f"One of {', '.join(METHODS)}; see `microtexture methods`.", metavar="NAME"),
+        "rpn",
+    ),
     "crop": (
         list[str],
         typer.Option(
-            help="Part of the photograph to work from; all of it by default. Once per photograph.", metavar="X,Y,W,H"
+            help="Part of the photograph to work from; all of it by default. Once per photograph, in their order.",
+            metavar="X,Y,W,H",
         ),
         [],
     ),
@@ -38,6 +44,21 @@ _OWN = {
     "depth": (int, typer.Option(help="Bits per channel, 8 or 16 (PNG and TIFF).", metavar="BITS"), 8),
     "overwrite": (bool, typer.Option("--overwrite", help="Replace OUT if it is there."), False),
 }
+
+
+class Sections(TyperCommand):
+    """Lists the options of every method, and then those that only some have, under the methods that have them."""
+
+    def format_options(self, ctx: Any, formatter: Any) -> None:
+        sections: dict[str, list[tuple[str, str]]] = {}
+        for parameter in self.get_params(ctx):
+            if record := parameter.get_help_record(ctx):
+                usual = "Arguments" if parameter.param_type_name == "argument" else "Options"
+                heading = getattr(parameter, "rich_help_panel", None) or usual
+                sections.setdefault(heading, []).append(record)
+        for heading, records in sections.items():
+            with formatter.section(heading):
+                formatter.write_dl(records)
 
 
 def command() -> Callable[..., None]:
@@ -70,16 +91,18 @@ def _found() -> dict[str, tuple[FormField, list[str]]]:
 
 def _option(field: FormField, owners: list[str]) -> inspect.Parameter:
     name = field.name.replace("_", "-")
-    help_text = field.help if len(owners) == len(METHODS) else f"{field.help} ({', '.join(owners)})"
+    heading = None if len(owners) == len(METHODS) else f"Options of {', '.join(owners)}"
+    help_text = field.help
     if field.kind == "switch":
         help_text = f"{help_text} [default: {field.default or 'off'}]"
-        declared = typer.Option(f"--{name}/--no-{name}", help=help_text)
+        declared = typer.Option(f"--{name}/--no-{name}", help=help_text, rich_help_panel=heading)
         return _parameter(field.name, bool | None, declared, None)
     metavar = "|".join(field.choices) or {"integer": "N", "number": "X"}.get(field.kind, "TEXT")
     if field.default:
         help_text = f"{help_text} [default: {field.default}]"
     # Text here: the Params class validates it, with the same words as the API's.
-    return _parameter(field.name, str | None, typer.Option(f"--{name}", help=help_text, metavar=metavar), None)
+    declared = typer.Option(f"--{name}", help=help_text, metavar=metavar, rich_help_panel=heading)
+    return _parameter(field.name, str | None, declared, None)
 
 
 def _parameter(name: str, annotation: Any, declared: Any, default: Any) -> inspect.Parameter:
