@@ -151,7 +151,7 @@ class SteerablePyramid:
         order = self.orientations - 1
         kappa = 2 ** (2 * order) * math.factorial(order) ** 2 / (self.orientations * math.factorial(2 * order))
         t = _log_radius(*self._axes(scale))
-        window = np.exp2(-order * np.maximum(t, -1))
+        window: Real = np.exp2(-order * np.maximum(t, -1))
         window *= math.sqrt(kappa)
         window *= _cosine(t)
         return window
