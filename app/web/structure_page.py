@@ -57,10 +57,10 @@ FORMULAS = (
     ),
 )
 STUDY = (  # by benchmarks/meter.py: the area under the ROC curve, and errors of thresholds set without the photograph
-    (r"$\delta_2$, the index of the meter", 0.990, 0.036),
-    (r"$\delta_0$, without smoothing", 0.881, 0.402),
-    (r"$\delta_1$", 0.994, 0.094),
-    (r"$\delta_4$", 0.912, 0.242),
+    (r"$\delta_2$, at 2 pixels: the meter", 0.990, 0.036),
+    (r"$\delta_0$, not smoothed", 0.881, 0.402),
+    (r"$\delta_1$, at 1 pixel", 0.994, 0.094),
+    (r"$\delta_4$, at 4 pixels", 0.912, 0.242),
     (r"$z$ at $\sigma = 0$", 0.574, 0.411),
     (r"$z$ at $\sigma = 2$", 0.863, 0.292),
     (r"mean of $\delta_1, \delta_2, \delta_4$", 0.992, 0.067),
