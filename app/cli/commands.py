@@ -137,6 +137,8 @@ def catalogue(
         finally:
             service.close()
     typer.echo(f"Made {filled.made} figures, {filled.failed} failed, {filled.kept} were there already.")
+    if filled.without_sample:
+        typer.echo(f"{filled.without_sample} need samples that are not in MICROTEXTURE_SAMPLES_DIR.", err=True)
     if filled.failed:
         raise typer.Exit(FAILED)
 

@@ -26,11 +26,12 @@ POLL_SECONDS = 0.1
 
 @dataclass(frozen=True)
 class Filled:
-    """How many exhibits were made, how many could not be, and how many were there already."""
+    """How many exhibits were made, could not be, were there already, and lack their sample in this installation."""
 
-    made: int
-    failed: int
-    kept: int
+    made: int = 0
+    failed: int = 0
+    kept: int = 0
+    without_sample: int = 0
 
 
 Told = Callable[[int, int, Exhibit, str | None], None]
@@ -85,8 +86,10 @@ class Catalogue:
         """
         while not self._samples_are_in.wait(POLL_SECONDS):
             if closing.is_set():
-                return Filled(0, 0, 0)
-        declared = exhibits()
+                return Filled()
+        here = {sample.id for sample in self._store.bundled_samples()}
+        every = exhibits()
+        declared = {name: exhibit for name, exhibit in every.items() if here.issuperset(dict(exhibit.inputs))}
         wanted = [name for name in declared if again or self._is_wanted(name)]
         waiting, begun, number, failed = deque(wanted), set[str](), 0, 0
         while waiting or begun:
@@ -102,7 +105,7 @@ class Catalogue:
                 error = self._error_of(name)
                 failed += error is not None
                 told(number, len(wanted), declared[name], error)
-        return Filled(number - failed, failed, len(declared) - len(wanted))
+        return Filled(number - failed, failed, len(declared) - len(wanted), len(every) - len(declared))
 
     def find(self, exhibit: Exhibit) -> Experiment | None:
         """The experiment of an exhibit, in whatever state; None if it was not begun, or deleted by the operator."""

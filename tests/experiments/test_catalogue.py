@@ -1,0 +1,206 @@
+"""The program's own experiments are made once, for good, and of nothing but what they declare."""
+
+import json
+import os
+import subprocess
+import sys
+import threading
+from collections.abc import Callable
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from app.errors import DeletedError, ForbiddenError, NotFoundError
+from app.experiments import catalogue
+from app.experiments.model import Sample, Status
+from app.experiments.service import Service
+from app.experiments.submission import NewExperiment, NewInput, prepare
+from app.gallery.exhibits import exhibits
+from app.gallery.groups import GROUPS
+from app.gallery.identity import identifier
+from app.images.crop import Rectangle
+from app.methods.explanation import Exhibit
+from app.methods.registry import METHODS
+from app.samples import bundled
+from app.settings import ROOT, Settings
+
+SAMPLES = ROOT / "samples"
+DRAWN = ("two_sinusoids", "lit_plaster")
+MOST_PIXELS = 640 * 512  # of a crop and of a texture: all exhibits together are made in a minute or two
+WAVES = Exhibit("rpn", (("two_sinusoids", "0,0,64,64"),), {"seed": 1})
+PLASTER = Exhibit("adsn", (("lit_plaster", "0,0,64,48"),), {"seed": 2})
+
+
+@pytest.fixture(scope="module")
+def samples(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Bundled samples that are small and quickly taken in."""
+    directory = tmp_path_factory.mktemp("drawn")
+    entries = json.loads((SAMPLES / "catalogue.json").read_text(encoding="utf-8"))
+    chosen = [entry for entry in entries if Path(entry["file"]).stem in DRAWN]
+    (directory / "catalogue.json").write_text(json.dumps(chosen), encoding="utf-8")
+    for entry in chosen:
+        (directory / entry["file"]).symlink_to(SAMPLES / entry["file"])
+    return directory
+
+
+@pytest.fixture
+def settings(tmp_path: Path, samples: Path) -> Settings:
+    return Settings(data_dir=tmp_path / "data", samples_dir=samples, operator_token="the operator", threads=1)
+
+
+@pytest.fixture
+def two(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two exhibits are declared, and one more whose sample is not here."""
+    away = Exhibit("rpn", (("gravel_gray", "0,0,64,64"),))
+    declared = {identifier(exhibit): exhibit for exhibit in (WAVES, PLASTER, away)}
+    monkeypatch.setattr(catalogue, "exhibits", lambda: declared)
+
+
+@pytest.fixture
+def filled(service: Service, two: None) -> Service:
+    assert service.catalogue.fill(threading.Event()) == catalogue.Filled(made=2, without_sample=1)
+    return service
+
+
+def _sample(sample_id: str) -> Sample:
+    entry = next(entry for entry in bundled(SAMPLES) if entry.id == sample_id)
+    with Image.open(entry.path) as picture:
+        channels = 1 if picture.mode == "L" else 3
+        return Sample(sample_id, "", *picture.size, channels, 8, False, datetime.now(UTC))
+
+
+@pytest.mark.parametrize("exhibit", exhibits().values(), ids=exhibits().keys())
+def test_every_exhibit_is_a_small_experiment_that_can_run(exhibit: Exhibit) -> None:
+    inputs = tuple(NewInput(sample, Rectangle.parse(crop)) for sample, crop in exhibit.inputs)
+    experiment = prepare(
+        NewExperiment(exhibit.method, inputs, exhibit.parameters),
+        catalogue.OWNER,
+        sample=_sample,
+        transparent=lambda sample, crop: False,
+        max_output_pixels=MOST_PIXELS,
+    )
+    assert max(source.crop.width * source.crop.height for source in experiment.inputs) <= MOST_PIXELS
+
+
+def test_the_identifier_is_a_function_of_what_is_computed() -> None:
+    same = Exhibit("rpn", WAVES.inputs, {"seed": 1, "alpha": 0.1}, ("texture",), "other words")
+    assert identifier(same) == identifier(WAVES)
+    others = [
+        Exhibit("adsn", WAVES.inputs, WAVES.parameters),
+        Exhibit("rpn", (("two_sinusoids", "0,0,64,63"),), WAVES.parameters),
+        Exhibit("rpn", WAVES.inputs, {"seed": 2}),
+    ]
+    assert len({identifier(exhibit) for exhibit in (WAVES, *others)}) == 4
+
+
+def test_every_method_is_told_of_once() -> None:
+    assert sorted(name for group in GROUPS for name in group.names) == sorted(METHODS)
+
+
+def test_made_twice_it_gives_the_same_bytes(filled: Service) -> None:
+    digests = [output.digest for output in filled.catalogue.find(WAVES).outputs]
+    told = []
+    again = filled.catalogue.fill(threading.Event(), again=True, told=lambda *args: told.append(args))
+    assert again == catalogue.Filled(made=2, without_sample=1)
+    assert [output.digest for output in filled.catalogue.find(WAVES).outputs] == digests
+    assert told == [(1, 2, WAVES, None), (2, 2, PLASTER, None)]
+
+
+def test_what_is_made_is_not_made_again(filled: Service) -> None:
+    assert filled.catalogue.fill(threading.Event()) == catalogue.Filled(kept=2, without_sample=1)
+
+
+def test_it_is_in_no_archive_and_survives_pruning(filled: Service, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What no page declares any more goes like any other experiment."""
+    assert filled.page().experiments == ()
+    monkeypatch.setattr("app.experiments.housekeeping.exhibits", lambda: {identifier(WAVES): WAVES})
+    assert filled.prune(timedelta(0)).experiments == 1
+    assert filled.catalogue.find(WAVES).status is Status.SUCCEEDED
+    with pytest.raises(DeletedError):
+        filled.get(identifier(PLASTER))
+
+
+def test_only_the_operator_may_delete_it_and_it_stays_deleted_until_made_again(filled: Service) -> None:
+    with pytest.raises(ForbiddenError):
+        filled.cancel_or_delete(identifier(WAVES), catalogue.OWNER)
+    filled.cancel_or_delete(identifier(WAVES), "the operator")
+    assert filled.catalogue.find(WAVES) is None
+    assert filled.catalogue.fill(threading.Event()).made == 0
+    assert filled.catalogue.fill(threading.Event(), again=True).made == 2
+    assert filled.catalogue.find(WAVES).status is Status.SUCCEEDED
+
+
+def test_what_failed_is_tried_again(service: Service, two: None, monkeypatch: pytest.MonkeyPatch) -> None:
+    with monkeypatch.context() as broken:
+        broken.setattr("app.experiments.run.read_crop", lambda *args: 1 / 0)
+        assert service.catalogue.fill(threading.Event()).failed == 2
+    assert service.catalogue.find(WAVES).status is Status.FAILED
+    assert service.catalogue.fill(threading.Event()).made == 2
+
+
+def test_the_service_makes_what_is_missing_in_the_background(
+    make_service: Callable[..., Service], settings: Settings, two: None
+) -> None:
+    service = make_service(settings.model_copy(update={"catalogue": True}))
+    service.start()
+    moments, deadline = threading.Event(), 400
+    while deadline and not ((found := service.catalogue.find(PLASTER)) and found.status.finished):
+        moments.wait(0.05)
+        deadline -= 1
+    assert service.catalogue.find(PLASTER).status is Status.SUCCEEDED
+
+
+class Busy:
+    """An engine in which something waits until told otherwise."""
+
+    def __init__(self) -> None:
+        self.waiting, self.jobs = 1, []
+
+    def submit(self, job: str) -> None:
+        self.jobs.append(job)
+
+    def snapshot(self, job: str) -> None:
+        return None
+
+
+def test_nothing_is_begun_while_somebody_waits(filled: Service) -> None:
+    """It asks again and again: here until the fifth time it is told that somebody waits."""
+    engine, asked = Busy(), []
+
+    class Closing(threading.Event):
+        def wait(self, timeout: float | None = None) -> bool:
+            assert engine.jobs == [] or engine.waiting == 0
+            asked.append(timeout)
+            engine.waiting = 0 if len(asked) == 5 else engine.waiting
+            return False
+
+    filled.catalogue._executor = engine
+    filled.catalogue.fill(Closing(), again=True)
+    assert engine.jobs == [identifier(WAVES), identifier(PLASTER)]
+    assert len(asked) == 5
+
+
+def test_an_exhibit_that_nobody_made_is_not_found_but_can_be_prepared(filled: Service) -> None:
+    other = Exhibit("rpn", WAVES.inputs, {"seed": 3})
+    assert filled.catalogue.find(other) is None
+    assert filled.catalogue.prepared(other).parameters["width"] == 64
+    with pytest.raises(NotFoundError):
+        filled.catalogue.prepared(Exhibit("rpn", (("nothing", "0,0,9,9"),)))
+
+
+def test_the_command_says_what_it_makes(tmp_path: Path, samples: Path) -> None:
+    """With a real engine, on what can be made of the drawn samples."""
+    environment = {
+        **os.environ,
+        "MICROTEXTURE_DATA_DIR": str(tmp_path),
+        "MICROTEXTURE_SAMPLES_DIR": str(samples),
+        "MICROTEXTURE_WORKERS": "2",
+    }
+    command = [Path(sys.executable).parent / "microtexture", "catalogue"]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    here = [exhibit for exhibit in exhibits().values() if set(dict(exhibit.inputs)) <= set(DRAWN)]
+    assert done.stdout == f"Made {len(here)} figures, 0 failed, 0 were there already.\n"
+    assert f"\n{len(here)}/{len(here)} " in done.stderr
+    assert "MICROTEXTURE_SAMPLES_DIR" in done.stderr
