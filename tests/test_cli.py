@@ -166,6 +166,44 @@ def test_more_photographs_than_the_method_takes_are_refused(tmp_path: Path) -> N
     assert "takes 1 input" in done.stderr
 
 
+@pytest.mark.parametrize("name", METHODS)
+def test_every_method_runs(tmp_path: Path, name: str) -> None:
+    out = tmp_path / "out.png"
+    photos = [SAND, CHINA][: len(METHODS[name].inputs)]
+    crops = [word for _ in photos for word in ("--crop", "20,10,48,40")]
+    done = synthesize(*photos, out, "--method", name, *crops, "--seed", "3")
+    assert done.exit_code == 0, done.output
+    assert pixels(out).shape == (40, 48, 3)
+
+
+def test_several_photographs_are_taken_in_their_order_each_with_its_crop(tmp_path: Path) -> None:
+    """A mixture that has all of its weight on one sample has that sample's mean, but for the few values cut off."""
+    boxes = {SAND: (0, 0, 64, 64), CHINA: (300, 40, 64, 64)}
+    crops = [word for box in boxes.values() for word in ("--crop", ",".join(map(str, box)))]
+    for place, (photo, (x, y, width, height)) in enumerate(boxes.items()):
+        out = tmp_path / f"{place}.png"
+        weights = ",".join("01"[place == other] for other in range(2))
+        assert synthesize(*boxes, out, "--method", "mix", *crops, "--weights", weights).exit_code == 0
+        crop = np.asarray(Image.open(photo).convert("RGB"))[y : y + height, x : x + width]
+        assert np.abs(pixels(out).mean((0, 1)) - crop.mean((0, 1))).max() < 1
+
+
+@pytest.mark.parametrize(("method", "option"), [("rpn", "order"), ("mix", "half-patch"), ("efros-leung", "alpha")])
+def test_an_option_of_another_method_is_refused_with_words(tmp_path: Path, method: str, option: str) -> None:
+    photos = [SAND] * len(METHODS[method].inputs)
+    done = synthesize(*photos, tmp_path / "out.png", "--method", method, f"--{option}", "0.1")
+    assert done.exit_code == 2
+    assert done.stderr.startswith(f"microtexture: The method {method} has no parameter '{option.replace('-', '_')}'")
+
+
+def test_help_lists_options_under_the_methods_that_have_them() -> None:
+    text = synthesize("--help").output
+    *_, last = text.split("Options of efros-leung:")
+    assert "--half-patch" in last
+    assert "--order" not in last
+    assert text.index("--seed") < text.index("Options of ")
+
+
 def test_a_missing_photograph_is_named(tmp_path: Path) -> None:
     assert "nowhere.jpg" in synthesize(tmp_path / "nowhere.jpg", tmp_path / "out.png").stderr
 

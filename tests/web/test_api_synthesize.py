@@ -36,6 +36,59 @@ def test_it_is_the_texture_that_an_experiment_makes(site, picture):
     assert send(site, picture(), crop="4,4,32,24", seed="3", width="50").content == kept
 
 
+def several(site, pictures, **fields):
+    names = ("file", "file-2", "file-3", "file-4", "file-5")
+    files = {name: (f"{name}.png", data) for name, data in zip(names, pictures, strict=False) if data is not None}
+    return site.client.post(URL, files=files, data={"method": "mix", **fields})
+
+
+def test_several_photographs_give_the_texture_that_an_experiment_makes_of_them(site, picture):
+    pictures = [picture(seed=seed) for seed in (1, 2, 3)]
+    crops = [(4, 4, 32, 24), (0, 0, 20, 30), (8, 2, 30, 30)]
+    inputs = [
+        {"sample": site.upload(data)["id"], "crop": dict(zip(("x", "y", "width", "height"), crop, strict=True))}
+        for data, crop in zip(pictures, crops, strict=True)
+    ]
+    record = site.finished(method="mix", inputs=inputs, parameters={"seed": 3, "weights": "1,2,3"})
+    kept = site.client.get(record["outputs"][0]["url"]).content
+    fields = {name: ",".join(map(str, crop)) for name, crop in zip(("crop", "crop-2", "crop-3"), crops, strict=True)}
+    response = several(site, pictures, seed="3", weights="1,2,3", **fields)
+    assert response.headers["Content-Type"] == "image/png"
+    assert response.content == kept
+
+
+@pytest.mark.parametrize(
+    ("given", "fields", "field"),
+    [
+        ("ab", {"crop-2": "0,0,900,900"}, "crop-2"),
+        ("ab", {"crop-2": "much"}, "crop-2"),
+        ("ab", {"crop-3": "0,0,9,9"}, "crop-3"),
+        ("ab", {"weights": "1,2,3"}, "weights"),
+        ("a", {}, "file"),
+        ("a.c", {}, "file-2"),
+        (".b", {}, "file"),
+        ("ab", {"method": "rpn"}, "file"),
+    ],
+)
+def test_a_fault_in_one_of_several_is_refused_with_its_field(site, picture, given, fields, field):
+    pictures = [None if place == "." else picture(seed=ord(place)) for place in given]
+    response = several(site, pictures, **fields)
+    assert response.status_code == 422, response.text
+    assert [fault["field"] for fault in response.json()["errors"]] == [field]
+    assert list((site.settings.data_dir / "incoming").iterdir()) == []
+
+
+def test_a_fifth_photograph_is_refused(site, picture):
+    assert several(site, [picture()] * 5).status_code == 400
+
+
+def test_the_bound_of_bytes_is_for_all_photographs_together(site, picture):
+    half = picture(190, 190)  # noise hardly deflates: about 100 kB of the 256 that may come
+    assert several(site, [half, half], crop="0,0,16,16", **{"crop-2": "0,0,16,16"}).status_code == 200
+    assert several(site, [half, half, half]).status_code == 413
+    assert list((site.settings.data_dir / "incoming").iterdir()) == []
+
+
 def test_empty_fields_count_as_left_out(site, picture):
     response = send(site, picture(), crop="", width="", height="", seed="")
     assert Image.open(BytesIO(response.content)).size == (48, 40)

@@ -44,10 +44,88 @@ def test_views_are_pictures_without_a_script(site: Any, experiment: dict[str, An
     assert stages.count("<img ") == count
 
 
-def test_steps_are_all_outputs(site: Any, experiment: dict[str, Any]) -> None:
+def test_steps_are_all_outputs_of_one_texture(site: Any, experiment: dict[str, Any]) -> None:
     text = page_of(site, experiment, "?view=steps")
     steps = text.split('class="steps"')[1].split("</ul>")[0]
     assert steps.count("<img ") == len(experiment["outputs"])
+
+
+@pytest.fixture(scope="module")
+def mixture(site: Any, picture: Callable[..., bytes]) -> dict[str, Any]:
+    """The record of a finished mixture of three crops of two samples."""
+    other = site.upload(picture(48, 40, seed=9))["id"]
+    box = {"x": 4, "y": 2, "width": 24, "height": 20}
+    inputs = [{"sample": sample, "crop": box} for sample in ("gravel_gray", other)]
+    inputs.append({"sample": "gravel_gray", "crop": {**box, "x": 30}})
+    return dict(site.finished(method="mix", inputs=inputs, parameters={"weights": "1,2,1"}))
+
+
+def test_every_input_is_a_pane_and_in_the_record(site: Any, mixture: dict[str, Any]) -> None:
+    text = page_of(site, mixture)
+    panes = re.findall(r'<figcaption>(?:<a[^>]*>)?([^<]+?)(?:</a>)? <span class="hint">', text.split("<template")[0])
+    assert panes == ["First sample", "Second sample", "Third sample", "Mix"]
+    assert text.split('class="panes')[1].split("<template")[0].count('class="meter"') == 4
+    assert "<h1>Mix of gravel and a photograph</h1>" in text
+    details = text.split('id="details"')[1].split("</table>")[0]
+    assert details.count(">4,2,24,20<") == 2
+    assert ">30,2,24,20<" in details
+
+
+def test_further_textures_are_a_gallery_and_no_steps(site: Any, mixture: dict[str, Any]) -> None:
+    text = page_of(site, mixture, "?view=steps")
+    gallery, steps = (text.split(f'<ul class="{name}')[1].split("</ul>")[0] for name in ("textures", "steps"))
+    others = [output["name"] for output in mixture["outputs"] if output["kind"] == "texture"][1:]
+    assert len(others) == 3
+    for name in others:
+        assert f'/outputs/{name}"' in gallery
+        assert f'/outputs/{name}"' not in steps
+    assert gallery.count('class="meter"') == 3
+    assert steps.count("<img ") == len(mixture["outputs"]) - 3
+
+
+def test_what_the_method_found_is_a_table(site: Any) -> None:
+    record = site.finished(method="texton")
+    facts = page_of(site, record).split('id="facts"')[1].split("</table>")[0]
+    assert len(record["diagnostics"]["facts"]) == facts.count("<tr>") > 0
+    for fact in record["diagnostics"]["facts"]:
+        assert fact["title"][1:] in html.unescape(facts)
+
+
+@pytest.mark.parametrize(
+    ("run", "words"),
+    [
+        ({}, "tiles without a seam"),
+        ({"parameters": {"add_smooth": True}}, "a seam shows"),
+        ({"method": "rayleigh", "parameters": {}}, "tiles without a seam"),
+    ],
+)
+def test_the_page_says_whether_the_texture_tiles(site: Any, run: dict[str, Any], words: str) -> None:
+    assert words in page_of(site, site.finished(**run))
+
+
+def test_only_methods_driven_by_the_same_phase_are_offered_at_it(
+    site: Any, experiment: dict[str, Any], mixture: dict[str, Any]
+) -> None:
+    """And with the inputs that there are; every other method is behind the form."""
+    offered = re.findall(r">([^<]+) at the same phase<", page_of(site, experiment))
+    assert "ADSN" in offered
+    assert not {"DSN", "Mix", "Heeger–Bergen"} & set(offered)
+    text = page_of(site, mixture)
+    assert "at the same phase" not in text
+    assert re.search(r'href="/samples/[^"]+#methods">Other method', text)
+
+
+def test_methods_without_that_phase_are_compared_without_a_word_of_it(site: Any, experiment: dict[str, Any]) -> None:
+    other = site.finished(method="rayleigh", parameters={"seed": experiment["parameters"]["seed"]})
+    text = site.client.get(f"/compare/{experiment['id']}/{other['id']}").text
+    assert "same phase" not in text
+
+
+def test_a_waiting_mixture_shows_all_of_its_crops(site: Any, mixture: dict[str, Any]) -> None:
+    inputs = mixture["inputs"]
+    with site.gate.closed():
+        text = page_of(site, site.run(wait=False, method="mix", inputs=inputs, parameters={"seed": 8}).json())
+    assert text.split('class="panes')[1].count("<image ") == 3
 
 
 def test_a_waiting_experiment_looks_again_without_a_script(site: Any) -> None:
