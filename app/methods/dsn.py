@@ -1,6 +1,7 @@
 """`dsn`: discrete spot noise."""
 
 from collections.abc import Iterator, Sequence
+from math import ceil
 from typing import Literal
 
 import numpy as np
@@ -14,7 +15,7 @@ from app.methods.options import SpotParams
 from app.methods.pictures import crops, encode, refuse_infinite
 from app.methods.random_phase import INPUTS
 from app.methods.references import IPOL_RPN, PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES, SPOT_NOISE
-from app.synthesis.dsn import counts, dsn, excess_kurtosis, shape, standard_spot
+from app.synthesis.dsn import Counts, counts, dsn, excess_kurtosis, shape, standard_spot
 from app.synthesis.spot import Spot
 from app.synthesis.spot_noise import asymptotic, sample_spot
 
@@ -63,7 +64,7 @@ def check(sizes: Sequence[Size], params: DsnParams) -> None:
     if params.spot != "sample" and 2 * params.radius + 1 > min(width, height):
         raise InvalidInputError(
             f"A spot of radius {params.radius:g} does not fit into a texture of {width} × {height} pixels: take a "
-            f"radius of at most {max(0.5, (min(width, height) - 1) / 2):g}, or a larger texture.",
+            f"smaller radius, or a texture of at least {ceil(2 * params.radius + 1)} pixels each way.",
             "parameters.radius",
         )
 
@@ -104,9 +105,20 @@ def run(sources: Sequence[Source], params: DsnParams, context: Context) -> Itera
     else:
         yield encode("spot", "Spot", shape(params.spot, height, width, params.radius), 1, context)
     context.progress("points", 0.9)
-    drawn = counts(height, width, params.order, params.seed).astype(np.float32)
-    yield encode("points", "How many spots each pixel got", drawn, max(1.0, float(drawn.max())), context)
+    yield _points(counts(height, width, params.order, params.seed), context)
     context.progress("points", 1.0)
+
+
+def _points(drawn: Counts, context: Context) -> Picture:
+    """The least count as black and the greatest as white."""
+    least, greatest = int(drawn.min()), int(drawn.max())
+    facts = (
+        Fact("least-points", "Least number of spots on a pixel", least),
+        Fact("most-points", "Greatest number of spots on a pixel", greatest),
+    )
+    drawn -= least
+    values, peak = drawn.astype(np.float32), max(1, greatest - least)
+    return encode("points", "How many spots each pixel got", values, peak, context, facts=facts)
 
 
 def _spot(source: Source, height: int, width: int, params: DsnParams, context: Context) -> Spot:

@@ -19,7 +19,7 @@ Real = NDArray[np.float32]
 
 PERCENT = (50, 90, 99)
 CUT_OFF = 0.001  # part of a texton's values that its linear picture shows as black or white
-DECADES = 4.0
+DECADES = 3.0
 
 
 class TextonParams(StillParams):
@@ -82,7 +82,7 @@ def _linear(t: Real) -> Real:
 
 
 def _logarithmic(t: Real) -> Real:
-    """The modulus over all channels, its greatest value as white, four powers of ten below it or less as black."""
+    """The modulus over all channels, its greatest value as white, three powers of ten below it or less as black."""
     power = np.square(t).sum(axis=2)
     power /= max(float(power.max()), np.finfo(np.float32).tiny)
     decades: Real = np.log10(np.maximum(power, np.float32(10 ** (-2 * DECADES)))) / 2
@@ -93,8 +93,12 @@ EXPLANATION = Explanation(
     what=(
         "Many spots make the same Gaussian texture: all those whose Fourier modulus is the sample's. The texton is the "
         "one among them that has no phase. All its oscillations crest at one point, its origin, so its energy gathers "
-        "there, and what lies further away tells how far the texture's order reaches: the radii that hold 50, 90 and "
+        "there, and what lies further away tells how far the texture's order reaches. The radii that hold 50, 90 and "
         "99 % of the energy are given with its picture.",
+        "A photograph is one draw of its texture, so its modulus flutters about a smooth spectrum as a Rayleigh noise "
+        "does. In the texton this flutter, about $1 - \\pi/4$ or a fifth of the energy, is the even noise over the "
+        "whole domain: the two outer radii mostly measure the crop. A cut takes the noise off, and $r$, without which "
+        "the contrast would fall by that much, is then about $\\sqrt{4/\\pi} = 1.13$ for a texture of the crop's size.",
         "The channels of a colour photograph have phases of their own, and their differences make the colours. So the "
         "phase of the luminance is taken off all channels alike: the differences stay.",
         "The synthesis is the asymptotic discrete spot noise of the extended texton: the texton, or the $K \\times K$ "
@@ -104,7 +108,7 @@ EXPLANATION = Explanation(
         "cut or the other extension changes.",
         "The linear picture shows the texton's 0 as mid-grey, and as black and white the value that one in a thousand "
         "exceeds. The logarithmic one shows the modulus, all channels together, from its greatest value (white) to "
-        "four powers of ten below (black).",
+        "three powers of ten below (black).",
     ),
     formulas=(
         Formula(
@@ -128,7 +132,7 @@ EXPLANATION = Explanation(
         "A texton is as good as the Gaussian model behind it: edges and objects are not in it.",
         "The extended texton ends where the sample did, without a window. That is harmless where the texton has died "
         "away by then; the texton of a regular fabric, or of a crop with large stains, has not, and cutting it blurs "
-        "the regularity. The radius that holds 99 % of the energy tells.",
+        "the regularity. The logarithmic picture tells, and a factor $r$ well above that of the noise alone.",
     ),
     figures=(
         Figure(

@@ -113,7 +113,7 @@ def dsn(spot: Spot, order: int, *, seed: int = 0, threads: int = 1, progress: Pr
     threads : int
         The result does not depend on it.
     progress : callable ``(stage, part)``, optional
-        Called between transforms; what it raises stops the work.
+        Called between transforms with the part of all the work that is done; what it raises stops it.
 
     Returns
     -------
@@ -131,11 +131,9 @@ def dsn(spot: Spot, order: int, *, seed: int = 0, threads: int = 1, progress: Pr
         progress("points", 0.0)
     noise = impulses(spot.height, spot.width, order, seed)
     if progress:
-        progress("points", 0.5)
+        progress("points", 0.15)
     spectrum = scipy.fft.rfft2(noise, overwrite_x=True, workers=threads)
-    if progress:
-        progress("points", 1.0)
-    return convolve(spot, spectrum, threads, progress)
+    return convolve(spot, spectrum, threads, progress, begin=0.3)
 
 
 def shape(kind: Literal["disc", "gaussian"], height: int, width: int, radius: float) -> Real:

@@ -57,7 +57,9 @@ def transform(plane: Real, spot: Spot, threads: int = 1) -> Complex:
     return spectrum
 
 
-def convolve(spot: Spot, noise: Complex, threads: int = 1, progress: Progress | None = None) -> Real:
+def convolve(
+    spot: Spot, noise: Complex, threads: int = 1, progress: Progress | None = None, begin: float = 0.0
+) -> Real:
     """Spot noise of a given white noise.
 
     Parameters
@@ -69,6 +71,8 @@ def convolve(spot: Spot, noise: Complex, threads: int = 1, progress: Progress | 
         For the transforms; the result does not depend on it.
     progress : callable ``(stage, part)``, optional
         Called between channels; what it raises stops the work.
+    begin : float
+        Part of the work that is done when this begins.
 
     Returns
     -------
@@ -77,7 +81,7 @@ def convolve(spot: Spot, noise: Complex, threads: int = 1, progress: Progress | 
     texture = np.empty((len(spot.planes), spot.height, spot.width), np.float32)
     for channel, (plane, mean) in enumerate(zip(spot.planes, spot.mean, strict=True)):
         if progress:
-            progress("texture", channel / len(texture))
+            progress("texture", begin + (1 - begin) * channel / len(texture))
         spectrum = transform(plane, spot, threads)
         spectrum *= noise
         spectrum[0, 0] = 0

@@ -174,7 +174,7 @@ def texton_noise(h: Real, spot: Spot, *, seed: int = 0, threads: int = 1, progre
     threads : int
         The result does not depend on it.
     progress : callable ``(stage, part)``, optional
-        Called between transforms; what it raises stops the work.
+        Called between transforms with the part of all the work that is done; what it raises stops it.
 
     Returns
     -------
@@ -184,13 +184,11 @@ def texton_noise(h: Real, spot: Spot, *, seed: int = 0, threads: int = 1, progre
         progress("random phase", 0.0)
     noise = random_spectrum(spot.height, spot.width, seed, rayleigh=True)
     if progress:
-        progress("random phase", 0.3)
+        progress("random phase", 0.15)
     own = sample_spot(h, spot.height, spot.width, threads=threads)
     turn = transform(luminance(own.planes.transpose(1, 2, 0)), own, threads)
     if progress:
-        progress("random phase", 0.6)
+        progress("random phase", 0.3)
     turn *= transform(luminance(spot.planes.transpose(1, 2, 0)), spot, threads).conj()
     noise *= _sign(turn)
-    if progress:
-        progress("random phase", 1.0)
-    return convolve(spot, noise, threads, progress)
+    return convolve(spot, noise, threads, progress, begin=0.45)
