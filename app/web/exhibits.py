@@ -103,8 +103,8 @@ def _standing_in(service: Service, exhibit: Exhibit, made: Experiment | None) ->
     """The sample's crop, where it is on show, and one place for all that is not there yet."""
     try:
         experiment = service.catalogue.prepared(exhibit)
-    except AppError as error:  # a sample that is not in yet
-        return [Shown(label(exhibit.method), "", "", 256, 256, state=error.message)]
+    except AppError:
+        return [Shown(label(exhibit.method), "", "", 256, 256, state="Its sample is not here yet")]
     page = f"/experiments/{made.id}" if made is not None else ""
     size = experiment.parameters["width"], experiment.parameters["height"]
     texture = Shown(

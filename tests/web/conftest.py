@@ -19,9 +19,10 @@ from PIL import Image
 
 from app.executor.inline import InlineExecutor
 from app.experiments.service import Service
+from app.gallery.exhibits import exhibits
 from app.main import create_app
 from app.methods.model import Progress
-from app.settings import Settings
+from app.settings import ROOT, Settings
 from app.store.blobs import FileBlobs
 from app.store.sql import SqlStore
 from app.worker import run_job
@@ -194,3 +195,47 @@ def experiment(site: Site) -> dict[str, Any]:
 def operator() -> dict[str, str]:
     """Headers of the operator."""
     return {"Authorization": f"Bearer {OPERATOR}"}
+
+
+IN_GALLERY = frozenset({"two_sinusoids", "lit_plaster", "gravel_gray"})
+MADE_IN_GALLERY = IN_GALLERY - {"gravel_gray"}  # few, and quickly made
+
+
+@pytest.fixture(scope="session")
+def of_gallery() -> frozenset[str]:
+    """The samples that `gallery` has."""
+    return IN_GALLERY
+
+
+@pytest.fixture(scope="session")
+def gallery(tmp_path_factory: pytest.TempPathFactory) -> Iterator[httpx.Client]:
+    """A service in which some exhibits are made, some are not, and of some not even the sample is there."""
+    directory, samples = tmp_path_factory.mktemp("gallery"), ROOT / "samples"
+    entries = json.loads((samples / "catalogue.json").read_text(encoding="utf-8"))
+    chosen = [entry for entry in entries if Path(entry["file"]).stem in IN_GALLERY]
+    (directory / "catalogue.json").write_text(json.dumps(chosen), encoding="utf-8")
+    for entry in chosen:
+        (directory / entry["file"]).symlink_to(samples / entry["file"])
+    settings = Settings(data_dir=directory / "data", samples_dir=directory, threads=1)
+    settings.data_dir.mkdir()
+    store, blobs = SqlStore(settings.sql_url), FileBlobs(settings.data_dir / "files")
+    service = Service(store, blobs, InlineExecutor(settings, run_job), settings)
+    made = {name: exhibit for name, exhibit in exhibits().items() if MADE_IN_GALLERY.issuperset(dict(exhibit.inputs))}
+    with serving(create_app(settings, service)) as url:
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr("app.experiments.catalogue.exhibits", lambda: made)
+            assert service.catalogue.fill(threading.Event()).made == len(made) > 3
+        with httpx.Client(base_url=url, timeout=PATIENCE, headers={"Accept": "text/html"}) as client:
+            yield client
+
+
+@pytest.fixture(scope="session")
+def page(gallery: httpx.Client) -> Callable[[str], str]:
+    """The HTML at a path of the gallery."""
+
+    def got(path: str) -> str:
+        answer = gallery.get(path)
+        assert answer.status_code == 200, answer.text
+        return answer.text
+
+    return got
