@@ -88,7 +88,7 @@ def _columns(starts: Sequence[bool], count: int) -> int:
 def _caption(exhibit: Exhibit, name: str, title: str, *, first: bool) -> str:
     if name == "texture":
         return exhibit.label or label(exhibit.method)
-    words = SAMPLE if name == "crop" else title
+    words = title.replace("Crop", SAMPLE) if name.startswith("crop") else title
     return f"{words}, {exhibit.label}" if first and exhibit.label and "texture" not in exhibit.show else words
 
 
