@@ -31,18 +31,44 @@ EXPLANATION = Explanation(
         "A Gaussian texture is told by its mean and covariance: it is symmetric about its mean, has no edges and no "
         "isolated objects. Where random phase noise fails it fails, too.",
         "Where the spectrum holds a few frequencies only, its Rayleigh modulus may all but drop one of them, which "
-        "random phase noise never does: compare both on two sinusoids.",
+        "random phase noise never does: see the two sinusoids above.",
     ),
     figures=(
         Figure(
             "A Gaussian texture",
-            "The crop and the asymptotic discrete spot noise that has its mean and covariance.",
+            "Granite, and the asymptotic discrete spot noise that has its mean and covariance, on four times the area.",
             (Exhibit("adsn", (("rockface_pink", "190,60,256,256"),), {"width": 512, "height": 512, "seed": 2}),),
         ),
         Figure(
+            "Beside random phase noise",
+            "RPN and ADSN at one phase: the modulus of the second is random, too, and one hardly sees it.",
+            (
+                Exhibit("rpn", (("towel_red", "96,96,256,256"),), {"seed": 1}),
+                Exhibit("adsn", (("towel_red", "96,96,256,256"),), {"seed": 1}, ("texture",)),
+                Exhibit("rpn", (("concrete_img_0572", "128,64,256,256"),), {"seed": 1}),
+                Exhibit("adsn", (("concrete_img_0572", "128,64,256,256"),), {"seed": 1}, ("texture",)),
+            ),
+        ),
+        Figure(
+            "Two frequencies only",
+            "A drawing, and where the difference shows: RPN shifts the two sinusoids, ADSN makes one of them weak, "
+            "another one for each seed.",
+            (
+                Exhibit("rpn", (("two_sinusoids", "0,0,256,256"),), {"seed": 1}),
+                *(
+                    Exhibit("adsn", (("two_sinusoids", "0,0,256,256"),), {"seed": seed}, ("texture",), f"seed {seed}")
+                    for seed in (5, 15)
+                ),
+            ),
+        ),
+        Figure(
             "What it cannot do",
-            "Stones and joints do not have a Gaussian distribution.",
-            (Exhibit("adsn", (("stonewall_rockwall", "128,128,256,256"),), {"seed": 2}),),
+            "Stones and joints do not have a Gaussian distribution: what is bright and what is dark is not "
+            "interchangeable, and neither has an outline any more.",
+            (
+                Exhibit("adsn", (("stonewall_rockwall", "128,128,256,256"),), {"seed": 2}),
+                Exhibit("adsn", (("crazy_paving001", "80,80,256,256"),), {"seed": 2}),
+            ),
         ),
     ),
 )

@@ -7,6 +7,9 @@ from app.methods.model import Method
 from app.methods.random_phase import INPUTS, RandomPhaseParams, check, run, toroidal
 from app.methods.references import IPOL_RPN, PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
 
+LEAVES = (("leaves_forest_floor", "256,256,256,256"),)
+PLASTER = (("lit_plaster", "0,0,256,256"),)
+
 EXPLANATION = Explanation(
     what=(
         "Every image is its Fourier modulus, which says how much of each oscillation it holds, and its phase, which "
@@ -16,6 +19,8 @@ EXPLANATION = Explanation(
         "differences between their phases. The crop is replaced by its periodic component first, so that the jump "
         "between its opposite borders does not come back as a cross of streaks, and for a larger texture by its "
         "extended spot.",
+        "That is all: two Fourier transforms, whatever the sample. There is nothing to converge and nothing to go "
+        "wrong, every seed gives another texture of the same kind, and each of them tiles without a seam.",
     ),
     formulas=(
         Formula(
@@ -38,14 +43,51 @@ EXPLANATION = Explanation(
     ),
     figures=(
         Figure(
-            "A micro-texture, twice as large",
-            "The crop and its random phase noise on four times the area.",
-            (Exhibit("rpn", (("gravel_gray", "96,96,256,256"),), {"width": 512, "height": 512, "seed": 1}),),
+            "A micro-texture, on four times the area",
+            "Rippled sand. The ripples keep their direction, their distance and their light; the texture tiles without "
+            "a seam.",
+            (Exhibit("rpn", (("sand_desert009", "128,64,256,256"),), {"width": 512, "height": 512, "seed": 1}),),
+        ),
+        Figure(
+            "Step by step",
+            "The crop; its periodic component, which fits together at opposite borders, and the smooth rest; the "
+            "logarithm of the Fourier modulus, zero frequency in the middle, which is the same before and after; and "
+            "what a random phase makes of it.",
+            (
+                Exhibit(
+                    "rpn",
+                    (("rockface_pink", "190,60,256,256"),),
+                    {"seed": 1},
+                    ("crop", "periodic", "smooth", "input-spectrum", "output-spectrum", "texture"),
+                ),
+            ),
+        ),
+        Figure(
+            "The same phase added to all colours",
+            "The same random phase, added to the phases of all channels, and put in their place: the second makes red, "
+            "green and blue oscillate together, and the colours are others.",
+            (
+                Exhibit("rpn", LEAVES, {"seed": 1}, label="added"),
+                Exhibit("rpn", LEAVES, {"seed": 1, "phase": "replace"}, ("texture",), "in their place"),
+            ),
+        ),
+        Figure(
+            "A light from one side",
+            "A drawing of plaster. The change of light belongs to no texture; it is taken out with the smooth "
+            "component, and can be put back.",
+            (
+                Exhibit("rpn", PLASTER, {"seed": 1}, ("crop", "smooth", "texture")),
+                Exhibit("rpn", PLASTER, {"seed": 1, "add_smooth": True}, ("texture",), "with the smooth component"),
+            ),
         ),
         Figure(
             "What it cannot do",
-            "The joints of the paving are alignments of phases: the random phase dissolves them.",
-            (Exhibit("rpn", (("tiles02", "0,0,256,256"),), {"seed": 1}),),
+            "The joints of paving and bricks are alignments of phases: the random phase dissolves them. Their period "
+            "and direction, which the modulus knows, stay.",
+            (
+                Exhibit("rpn", (("tiles02", "0,0,256,256"),), {"seed": 1}),
+                Exhibit("rpn", (("brick_gray", "128,128,256,256"),), {"seed": 1}),
+            ),
         ),
     ),
 )
