@@ -196,7 +196,7 @@ EXPLANATION = Explanation(
         ),
         Figure(
             "A photograph as the spot",
-            "Where the crop is a micro-texture, ten copies of it look like the crop already.",
+            "Ten copies of a crop as large as the texture cannot be told from the limit: one sees none of them.",
             (
                 Exhibit(
                     "dsn",

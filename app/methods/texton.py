@@ -54,14 +54,19 @@ def run(sources: Sequence[Source], params: TextonParams, context: Context) -> It
     context.progress("crop", 0.8)
     yield from crops(sources, context)
     context.progress("texton", 0.85)
-    yield encode("texton", "Texton", _linear(t), 1, context, facts=_radii(t))
+    greatest = _greatest(t)
+    yield encode("texton", "Texton", _linear(t, greatest), 1, context, facts=_radii(t))
+    context.progress("texton", 0.9)
     yield encode("texton-log", "Texton, logarithmic", _logarithmic(t), 1, context)
+    del t
     context.progress("extended texton", 0.95)
-    fact = Fact("gain", "Factor r of the extended texton", float(r.mean()))
-    extended = np.zeros((height, width, len(r)), np.float32)
+    gain = float(r.mean())
+    extended = np.full((height, width, len(r)), 0.5, np.float32)
     rows, columns = spot.planes.shape[1:]
-    extended[spot.top : spot.top + rows, spot.left : spot.left + columns] = spot.planes.transpose(1, 2, 0)
-    yield encode("spot", "Extended texton", _linear(extended), 1, context, facts=(fact,))
+    inside = extended[spot.top : spot.top + rows, spot.left : spot.left + columns]
+    inside[:] = _linear(spot.planes.transpose(1, 2, 0), gain * greatest)
+    fact = Fact("gain", "Factor r of the extended texton", gain)
+    yield encode("spot", "Extended texton", extended, 1, context, facts=(fact,))
     context.progress("extended texton", 1.0)
 
 
@@ -73,17 +78,22 @@ def _radii(t: Real) -> tuple[Fact, ...]:
     )
 
 
-def _linear(t: Real) -> Real:
-    """0 as mid-grey; black and white at minus and plus the value that one in a thousand exceeds."""
+def _greatest(t: Real) -> float:
+    """The modulus that one value in a thousand reaches; 1 for a texton without contrast."""
     values = np.abs(t).ravel()
     rank = int(len(values) * (1 - CUT_OFF))
-    greatest = float(np.partition(values, rank)[rank]) if len(values) else 0.0
-    return 0.5 + t / np.float32(2 * greatest or 1)
+    values.partition(rank)
+    return float(values[rank]) or 1.0
+
+
+def _linear(t: Real, greatest: float) -> Real:
+    """0 as mid-grey, minus and plus ``greatest`` as black and white."""
+    return 0.5 + t / np.float32(2 * greatest)
 
 
 def _logarithmic(t: Real) -> Real:
     """The modulus over all channels, its greatest value as white, three powers of ten below it or less as black."""
-    power = np.square(t).sum(axis=2)
+    power = np.einsum("yxc,yxc->yx", t, t)
     power /= max(float(power.max()), np.finfo(np.float32).tiny)
     decades: Real = np.log10(np.maximum(power, np.float32(10 ** (-2 * DECADES)))) / 2
     return 1 + decades / np.float32(DECADES)
@@ -107,8 +117,8 @@ EXPLANATION = Explanation(
         "seed. Uncut and at the crop's own size it *is* that texture; otherwise flip between the two to see what the "
         "cut or the other extension changes.",
         "The linear picture shows the texton's 0 as mid-grey, and as black and white the value that one in a thousand "
-        "exceeds. The logarithmic one shows the modulus, all channels together, from its greatest value (white) to "
-        "three powers of ten below (black).",
+        "exceeds, the one of the extended texton $r$ times that value. The logarithmic picture shows the modulus, all "
+        "channels together, from its greatest value (white) to three powers of ten below (black).",
     ),
     formulas=(
         Formula(

@@ -139,8 +139,9 @@ def extend_texton(
     rows, columns = (_around(side, cut) for side in t.shape[:2])
     kept = t[rows, columns].transpose(2, 0, 1).copy()
     area = height * width
-    total = np.square(t, dtype=np.float64).mean(axis=(0, 1))
-    left = np.square(kept, dtype=np.float64).sum(axis=(1, 2)) - kept.sum(axis=(1, 2), dtype=np.float64) ** 2 / area
+    total = np.einsum("yxc,yxc->c", t, t, dtype=np.float64) / (t.shape[0] * t.shape[1])
+    left = np.einsum("cyx,cyx->c", kept, kept, dtype=np.float64)
+    left -= kept.sum(axis=(1, 2), dtype=np.float64) ** 2 / area
     flat = (total == 0) | (left <= 0)
     r = np.where(flat, 1.0, np.sqrt(total * area / np.where(flat, 1.0, left)))
     kept *= r.astype(np.float32)[:, None, None]
@@ -190,5 +191,6 @@ def texton_noise(h: Real, spot: Spot, *, seed: int = 0, threads: int = 1, progre
     if progress:
         progress("random phase", 0.3)
     turn *= transform(luminance(spot.planes.transpose(1, 2, 0)), spot, threads).conj()
+    del own
     noise *= _sign(turn)
     return convolve(spot, noise, threads, progress, begin=0.45)
