@@ -9,7 +9,7 @@ from pydantic import Field
 
 from app.errors import InvalidInputError
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
-from app.methods.model import Context, Fact, Method, Picture, Size, Source, StillParams
+from app.methods.model import Context, Fact, Method, Picture, Progress, Size, Source, StillParams
 from app.methods.pictures import crops, encode, refuse_infinite
 from app.methods.random_phase import INPUTS
 from app.methods.references import EFROS_LEUNG as EFROS_LEUNG_ARTICLE
@@ -19,7 +19,7 @@ from app.synthesis.efros_leung import efros_leung, verbatim_share
 HALF_PATCH = 4
 MOST_WORK = 10**12  # products: a minute or two on two processors
 USUAL_WORK = 3 * 10**11  # of a texture whose size was not asked for
-MOST_TABLE = 1 << 26  # numbers of four bytes that the search holds
+MOST_TABLE = 1 << 25  # numbers of four bytes that the search holds
 
 
 class EfrosLeungParams(StillParams):
@@ -28,7 +28,7 @@ class EfrosLeungParams(StillParams):
     half_patch: int = Field(
         HALF_PATCH,
         ge=1,
-        le=16,
+        le=11,
         title="Half-patch",
         description="How far the windows that are compared reach from their middle, in pixels: 4 makes them 9 × 9. "
         "About the size of the largest element of the texture is right: a smaller one loses its arrangement, a "
@@ -106,7 +106,7 @@ def run(sources: Sequence[Source], params: EfrosLeungParams, context: Context) -
         tolerance=params.tolerance,
         seed=params.seed,
         threads=context.threads,
-        progress=context.between(0, 0.97),
+        progress=_overall(context),
     )
     share = Fact(
         "verbatim", "Pixels copied along with their left or upper neighbour", verbatim_share(grown.copied), "%"
@@ -121,6 +121,12 @@ def run(sources: Sequence[Source], params: EfrosLeungParams, context: Context) -
     order = grown.order.astype(np.float32)
     yield encode("order", "Order of growth, from black to white", order, max(1, grown.order.max()), context)
     context.progress("views", 1.0)
+
+
+def _overall(context: Context) -> Progress:
+    """The stages of `efros_leung` one after the other."""
+    stages = {"order": (0.0, 0.02), "patches": (0.02, 0.05), "growth": (0.05, 0.97)}
+    return lambda stage, part: context.between(*stages[stage])(stage, part)
 
 
 def _coordinate_colours(height: int, width: int) -> NDArray[np.float32]:

@@ -11,6 +11,7 @@ Efros, Leung, "Texture Synthesis by Non-parametric Sampling", ICCV 1999; Aguerre
 """
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -26,7 +27,6 @@ Index = NDArray[np.intp]
 Progress = Callable[[str, float], None]
 
 SEED_SIDE = 3  # pixels
-DISTANCES = 1 << 23  # held at a time, 32 MB
 PIXELS = 4096  # looked at between two calls of the progress
 
 
@@ -99,6 +99,7 @@ def efros_leung(
     initial = sequence[: min(SEED_SIDE, height) * min(SEED_SIDE, width)]
     corner = rng.integers(np.array(h.shape[:2]) - SEED_SIDE + 1)
     chances = rng.random(height * width)
+    steps = list(_steps(sequence, len(initial), height, width, half_patch, progress))
 
     # The texture within a frame that is never known, so that every window is whole.
     canvas = np.zeros((height + 2 * half_patch, width + 2 * half_patch, h.shape[2]), np.float32)
@@ -119,11 +120,10 @@ def efros_leung(
     across = np.arange(side)
     window = (across[:, None] * canvas.shape[1] + across).ravel()
     with Team(threads) as team:
-        search = PatchSearch(h, half_patch, team)
-        most = max(1, DISTANCES // len(search))
+        search = PatchSearch(h, half_patch, team, partial(progress, "patches"))
         done = len(initial)
-        for step in _steps(sequence, done, height, width, half_patch, progress):
-            for ranks in np.split(step, range(most, len(step), most)):
+        for step in steps:
+            for ranks in np.split(step, range(search.batch, len(step), search.batch)):
                 progress("growth", done / len(sequence))
                 y, x = np.divmod(sequence[ranks], width)
                 around = (y * canvas.shape[1] + x)[:, None] + window

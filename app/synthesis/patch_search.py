@@ -15,6 +15,8 @@ Efros, Leung, "Texture Synthesis by Non-parametric Sampling", ICCV 1999; Higham,
 Algorithms", 2002, section 3.1, for the bound on the errors of a scalar product.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
@@ -25,7 +27,9 @@ Real = NDArray[np.float32]
 Double = NDArray[np.float64]
 Index = NDArray[np.intp]
 
-TILE = 64  # patches in one of the small products, so that each stays in its thread and in the processor's cache
+PRODUCT = 1 << 18  # multiplications in one of them, few enough for BLAS to stay in the calling thread
+BATCH = 1 << 30  # multiplications for a batch of patches: a few tenths of a second
+DISTANCES = 1 << 23  # in a batch, 32 MB
 PAIRS = 4096  # patches measured in double precision at a time
 OUTSIDE = 1e30  # stands for s² beyond the image: a patch that is known there is far from any
 UNIT = 2.0**-24  # unit roundoff of single precision
@@ -70,9 +74,11 @@ class PatchSearch:
         n ≥ 1: patches have 2n + 1 pixels a side.
     team : Team
         Computes the products; the result does not depend on its threads.
+    progress : callable ``(part)``
+        Called while the patches are laid out.
     """
 
-    def __init__(self, h: Real, half_patch: int, team: Team) -> None:
+    def __init__(self, h: Real, half_patch: int, team: Team, progress: Callable[[float], None]) -> None:
         side, channels = 2 * half_patch + 1, h.shape[2]
         self._team = team
         self._weights = gaussian_window(half_patch).ravel()
@@ -81,20 +87,25 @@ class PatchSearch:
         self._columns = h.shape[1]
         self._centre = h.mean((0, 1), dtype=np.float64)
         rows = _patches(np.pad(h, frame, constant_values=np.nan), side).reshape(-1, side * side * channels)
+        progress(0.0)
         classes, self._first = _equal_rows(rows)
         self._members = np.argsort(classes, kind="stable")
         self._counts = np.bincount(classes)
         self._starts = np.cumsum(self._counts) - self._counts
-        self._tiles = self._tiled(rows)
+        self._tiles = self._tiled(rows, progress)
         # Of a product of this many terms, and of the roundings of its factors and of what it is compared with.
         self._error = 1.01 * UNIT * (self._tiles.shape[1] + 16)
 
-    def _tiled(self, rows: Real) -> Real:
-        """The distinct patches, (s, s²) with s centred, and (0, `OUTSIDE`), as (tiles, terms, `TILE`)."""
+    def _tiled(self, rows: Real, progress: Callable[[float], None]) -> Real:
+        """The distinct patches, (s, s²) with s centred, and (0, `OUTSIDE`), as (tiles, terms, patches in a tile)."""
         pixels, channels = len(self._weights), len(self._centre)
-        tiles = np.zeros((-(-len(self._first) // TILE), pixels * (channels + 1), TILE), np.float32)
+        terms = pixels * (channels + 1)
+        size = 32 if terms <= 1024 else 16  # of a tile; what was fastest
+        tiles = np.zeros((-(-len(self) // size), terms, size), np.float32)
         for number, tile in enumerate(tiles):
-            members = self._first[number * TILE : (number + 1) * TILE]
+            if number % 128 == 0:
+                progress(number / len(tiles))
+            members = self._first[number * size : (number + 1) * size]
             s = rows[members].reshape(-1, pixels, channels) - self._centre
             squares = np.square(s).sum(2)
             tile[: pixels * channels, : len(members)] = np.nan_to_num(s).reshape(len(members), -1).T
@@ -104,6 +115,11 @@ class PatchSearch:
     def __len__(self) -> int:
         """Distinct patches, which is what a search costs."""
         return len(self._first)
+
+    @property
+    def batch(self) -> int:
+        """How many patches are best searched for at a time."""
+        return max(1, min(DISTANCES // len(self), BATCH // self._tiles.size))
 
     def draw(self, values: Real, known: NDArray[np.bool_], tolerance: float, chances: Double) -> Index:
         """For each of M patches one of the image's patches, uniformly among those within (1 + ε) of the nearest.
@@ -149,19 +165,23 @@ class PatchSearch:
     def _product(self, centred: Double, weights: Double) -> Real:
         """Distances of M patches to all distinct ones, less the patches' own energy, in single precision (M, N)."""
         count, pixels, channels = centred.shape
-        left = np.empty((count, pixels * (channels + 1)), np.float32)
-        left[:, : pixels * channels] = (-2 * weights[:, :, None] * centred).reshape(count, -1)
-        left[:, pixels * channels :] = weights
-        tiles = len(self._tiles)
-        result = np.empty((count, tiles * TILE), np.float32)
-        parts = result.reshape(count, tiles, TILE).transpose(1, 0, 2)
+        tiles, terms, size = self._tiles.shape
+        parts = -(-count // max(1, PRODUCT // (terms * size)))
+        rows = -(-count // parts)
+        left = np.zeros((parts * rows, terms), np.float32)
+        left[:count, : pixels * channels] = (-2 * weights[:, :, None] * centred).reshape(count, -1)
+        left[:count, pixels * channels :] = weights
+        result = np.empty((parts * rows, tiles * size), np.float32)
+        # A tile stays in the cache while it meets all parts of the left side.
+        products = result.reshape(parts, rows, tiles, size).transpose(2, 0, 1, 3)
+        factors = left.reshape(1, parts, rows, terms)
         step = -(-tiles // max(1, self._team.threads))
 
         def multiply(first: int) -> None:
-            np.matmul(left, self._tiles[first : first + step], out=parts[first : first + step])
+            np.matmul(factors, self._tiles[first : first + step, None], out=products[first : first + step])
 
         self._team.run(multiply, range(0, tiles, step), lambda part: None)
-        return result[:, : len(self)]
+        return result[:count, : len(self)]
 
     def _distances(self, values: Real, weights: Double, rows: Index, found: Index) -> Double:
         """Distances between patches ``rows`` and the distinct patches ``found``, pair by pair, in double precision."""

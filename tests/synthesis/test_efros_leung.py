@@ -123,7 +123,7 @@ def test_a_patch_is_drawn_uniformly_among_all_positions_within_the_tolerance():
     chances = (np.arange(3 * len(near)) + 0.5) / (3 * len(near))
     with Team(1) as team:
         values, masks = (np.repeat(a.reshape(1, 9, -1), len(chances), 0) for a in (window, known))
-        drawn = PatchSearch(h, n, team).draw(values, masks[:, :, 0], tolerance, chances)
+        drawn = PatchSearch(h, n, team, lambda part: None).draw(values, masks[:, :, 0], tolerance, chances)
     assert (np.bincount(drawn, minlength=h.size)[near] == 3).all()
 
 
@@ -131,7 +131,7 @@ def test_equal_patches_are_searched_once():
     stripes = np.tile(np.arange(4, dtype=np.float32), (30, 5))[:, :, None]
     with Team(1) as team:
         # 4 inside; within one pixel of the border they differ: above, below and not, times left, right and not
-        assert len(PatchSearch(stripes, 1, team)) == 3 * (4 + 2)
+        assert len(PatchSearch(stripes, 1, team, lambda part: None)) == 3 * (4 + 2)
 
 
 @pytest.mark.parametrize("h", [sample(), np.full((20, 20, 3), 7, np.float32)], ids=["grain", "constant"])
@@ -186,7 +186,8 @@ def test_the_progress_of_every_stage_rises():
     calls = []
     efros_leung(sample(), 70, 70, half_patch=2, progress=lambda stage, part: calls.append((stage, part)))
     stages = {stage: [part for name, part in calls if name == stage] for stage, _ in calls}
-    assert list(stages) == ["order", "growth"]
+    assert list(stages) == ["order", "patches", "growth"]
+    assert [stage for stage, _ in calls] == sorted((stage for stage, _ in calls), key=list(stages).index)
     for parts in stages.values():
         assert parts == sorted(parts)
     assert stages["growth"][-1] == 1
