@@ -1,5 +1,6 @@
 """An experiment's page: pictures beside and upon each other, the other model, progress, cancelling, snippets."""
 
+import os
 import subprocess
 import sys
 from collections.abc import Callable
@@ -185,18 +186,33 @@ def test_polling_takes_over_where_events_fail(visitors: Any) -> None:
     expect(page.locator(".viewer.live")).to_be_visible()
 
 
-@pytest.mark.parametrize("language", ["curl", "Python"])
+@pytest.fixture(scope="session")
+def mixture(site: Any) -> dict[str, Any]:
+    """A finished mixture of three crops of two samples."""
+    crops = {"x": 40, "y": 30, "width": 96, "height": 80}, {"x": 200, "y": 160, "width": 80, "height": 96}
+    samples = ("gravel_gray", "sand_desert009", "gravel_gray")
+    inputs = [{"sample": sample, "crop": crops[place % 2]} for place, sample in enumerate(samples)]
+    body = {"method": "mix", "inputs": inputs, "parameters": {"weights": "1,2,1", "width": 128, "seed": 5}}
+    answer = site.client.post("/api/v1/experiments", json=body, headers={"Prefer": "wait=30"})
+    assert answer.status_code == 201, answer.text
+    return dict(answer.json())
+
+
+@pytest.mark.parametrize("language", ["curl", "Command line", "Python"])
+@pytest.mark.parametrize("kind", ["experiment", "mixture"])
 def test_the_same_run_elsewhere_gives_the_same_bytes(
-    visitors: Any, site: Any, experiment: dict[str, Any], language: str, tmp_path: Path
+    visitors: Any, site: Any, request: pytest.FixtureRequest, kind: str, language: str, tmp_path: Path
 ) -> None:
     """What the page shows is copied by its button, pasted and run: the picture is the page's, byte for byte."""
+    experiment = request.getfixturevalue(kind)
     page = visitors.visit(f"/experiments/{experiment['id']}", permissions=["clipboard-read", "clipboard-write"])
     snippet = page.locator(".snippet").filter(has=page.get_by_role("heading", name=language, exact=True))
     snippet.get_by_role("button", name="Copy").click()
     expect(snippet.get_by_text("Copied")).to_be_visible()
     text = page.evaluate("navigator.clipboard.readText()")
-    command = ["sh", "-c", text] if language == "curl" else [sys.executable, "-c", text]
-    subprocess.run(command, cwd=tmp_path, check=True, timeout=60)
+    command = [sys.executable, "-c", text] if language == "Python" else ["sh", "-c", text]
+    installed = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    subprocess.run(command, cwd=tmp_path, check=True, timeout=60, env={**os.environ, "PATH": installed})
     original = site.client.get(f"/api/v1/experiments/{experiment['id']}/outputs/texture").content
     assert (tmp_path / "texture.png").read_bytes() == original
 
