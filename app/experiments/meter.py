@@ -8,6 +8,7 @@ from app.experiments.model import Sample
 from app.experiments.ports import BlobStore
 from app.images.crop import Rectangle
 from app.images.read import read_crop
+from app.synthesis.luminance import Real, luminance
 from app.synthesis.structure import CENTRE, Structure, structure_index
 
 Verdict = Literal["micro-texture", "borderline", "structured"]
@@ -16,6 +17,8 @@ Verdict = Literal["micro-texture", "borderline", "structured"]
 # nothing structured lies below the second; once halved in size, nothing structured lies below the first. Between two
 # values of the second decimal, so that the same number, as it is shown, has the same word.
 MICRO, STRUCTURED = 0.055, 0.075
+SMALL = 1 << 20  # pixels of a photograph that is decoded as fast as a crop of it, and so is kept decoded
+PHOTOGRAPHS = 4  # that are: 16 MB at most
 KEPT = 1024  # crops whose index is remembered: the photographs of pages, and the way a crop was dragged
 
 
@@ -61,6 +64,7 @@ class Meter:
     def __init__(self, blobs: BlobStore) -> None:
         self._blobs = blobs
         self._measured = lru_cache(KEPT)(self._measure)
+        self._photograph = lru_cache(PHOTOGRAPHS)(self._read)
 
     def structure(self, sample: Sample, crop: Rectangle | None, sigma: float) -> Structure:
         """The structure index of a crop, of all of the sample if None; of a large one, its centre 1024 × 1024 pixels.
@@ -70,11 +74,20 @@ class Meter:
         InvalidInputError
             If the crop reaches outside the sample or holds transparent pixels.
         """
-        area = crop or Rectangle(0, 0, sample.width, sample.height)
-        return self._measured(sample.digest, measured(area.within(sample.width, sample.height)), sigma)
+        whole = Rectangle(0, 0, sample.width, sample.height)
+        area = measured((crop or whole).within(sample.width, sample.height))
+        small = sample.width * sample.height <= SMALL and not sample.transparent
+        return self._measured(sample.digest, area, sigma, whole if small else None)
 
-    def _measure(self, digest: str, area: Rectangle, sigma: float) -> Structure:
-        return structure_index(read_crop(self._blobs.path(digest), area), sigma)
+    def _measure(self, digest: str, area: Rectangle, sigma: float, whole: Rectangle | None) -> Structure:
+        if whole is None:
+            return structure_index(self._read(digest, area), sigma)
+        grey = self._photograph(digest, whole)[area.y : area.y + area.height, area.x : area.x + area.width]
+        return structure_index(grey, sigma)
+
+    def _read(self, digest: str, area: Rectangle) -> Real:
+        """Read a crop's luminance, which is all that is measured."""
+        return luminance(read_crop(self._blobs.path(digest), area))
 
 
 def measured(area: Rectangle) -> Rectangle:
