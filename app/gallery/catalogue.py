@@ -72,6 +72,6 @@ FAILURES = (
         "lit_plaster",
         "0,0,256,256",
         "A drawing of plaster lit from one side. A texture has no sides: the light is evened out, and its change is "
-        "told by nothing. The meter, which looks for edges, is not warned either.",
+        "told by nothing. The meter, which looks for edges, does not warn of it.",
     ),
 )

@@ -1,0 +1,55 @@
+"""A visitor reads how a method works, runs it by its button, and looks at what came of it."""
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from axe_playwright_python.sync_playwright import Axe
+from playwright.sync_api import Page, expect
+
+from app.methods.registry import METHODS
+
+Shown = Callable[[Page, str], np.ndarray]
+PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True}
+RULES = {"runOnly": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]}
+PAGES = ["/methods", "/catalogue", "/figures", "/methods/rpn", "/methods/mix"]
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_a_method_is_run_from_its_page(
+    visitors: Any, site: Any, shown_pixels: Shown, screenshot: Callable[..., None], name: str
+) -> None:
+    """Its picture has the size that its record says, and is not one grey."""
+    page = visitors.visit("/methods")
+    page.get_by_role("main").locator(f'a[href="/methods/{name}"]').click()
+    expect(page.get_by_role("heading", level=1)).to_have_text(METHODS[name].title)
+    assert page.locator("math[display=block]").first.bounding_box()["height"] > 8
+    screenshot(page, f"method-{name}")
+    page.get_by_role("link", name="Run it").click()
+    expect(page.locator(f"#method-{name}")).to_be_checked()
+    page.get_by_role("button", name="Synthesise").click()
+    page.wait_for_url(re.compile("/experiments/"))
+    expect(page.get_by_role("heading", name="Time by stage")).to_be_visible()
+    identifier = page.url.rsplit("/", 1)[-1]
+    texture = site.client.get(f"/api/v1/experiments/{identifier}").json()["outputs"][0]
+    pixels = shown_pixels(page, f'img[src*="/outputs/{texture["name"]}"]')
+    assert pixels.shape == (texture["height"], texture["width"], 3)
+    assert pixels.std() > 4  # grey levels; the evenest sample of any page has about 8
+
+
+@pytest.mark.parametrize("theme", ["light", "dark"])
+def test_pages_of_the_laboratory_are_accessible(visitors: Any, theme: str) -> None:
+    page = visitors.visit(color_scheme=theme)
+    for path in PAGES:
+        page.goto(path)
+        found = Axe().run(page, options=RULES)
+        assert found.violations_count == 0, f"{path}: {found.generate_report()}"
+
+
+def test_pages_of_the_laboratory_fit_a_phone(visitors: Any) -> None:
+    page = visitors.visit(**PHONE)
+    for path in PAGES:
+        page.goto(path)
+        assert page.evaluate("document.documentElement.scrollWidth") <= 390, path
