@@ -45,7 +45,7 @@ def run(sources: Sequence[Source], params: TextonParams, context: Context) -> It
     height, width = params.height or source.pixels.shape[0], params.width or source.pixels.shape[1]
     context.progress("texton", 0.0)
     h = centre(source.pixels, height, width)
-    t = texton(h, context.threads)
+    t = texton(h, context.threads, context.between(0, 0.2))
     context.progress("texton", 0.2)
     spot, r = extend_texton(t, h.mean(axis=(0, 1), dtype=np.float64), height, width, params.cut)
     values = texton_noise(h, spot, seed=params.seed, threads=context.threads, progress=context.between(0.2, 0.8))

@@ -43,7 +43,7 @@ def _sign(spectrum: Complex) -> Complex:
     return sign
 
 
-def texton(h: Real, threads: int = 1) -> Real:
+def texton(h: Real, threads: int = 1, progress: Progress | None = None) -> Real:
     """Texton of the periodic component of an image, without its mean.
 
     Parameters
@@ -51,6 +51,8 @@ def texton(h: Real, threads: int = 1) -> Real:
     h : ndarray of float32, shape (H, W, C)
     threads : int
         For the transforms.
+    progress : callable ``(stage, part)``, optional
+        Called between channels; what it raises stops the work.
 
     Returns
     -------
@@ -67,7 +69,9 @@ def texton(h: Real, threads: int = 1) -> Real:
     p = periodic_planes(h, threads)
     p -= p.mean(axis=(1, 2), dtype=np.float64, keepdims=True).astype(np.float32)
     turn = _sign(scipy.fft.rfft2(luminance(p.transpose(1, 2, 0)), workers=threads)).conj()
-    for plane in p:
+    for channel, plane in enumerate(p):
+        if progress:
+            progress("texton", (1 + channel) / (1 + len(p)))
         spectrum = scipy.fft.rfft2(plane, workers=threads)
         spectrum *= turn
         spectrum[0, 0] = 0
