@@ -138,8 +138,8 @@ def _coordinate_colours(height: int, width: int) -> NDArray[np.float32]:
 EXPLANATION = Explanation(
     what=(
         "The texture grows around a small patch that is taken from the crop at random. For the next pixel, what is "
-        "already there in a square window around it is compared with all windows of the crop; one of those that "
-        "match best is drawn, and the pixel in its middle is copied. Nothing is modelled, so nothing is smoothed "
+        "already there in a square window around it is compared with the crop everywhere; one of the places "
+        "that match best is drawn, and its pixel is copied. Nothing is modelled, so nothing is smoothed "
         "away: edges, bricks and letters come back, as far as a window sees them.",
         "Pixels are filled layer after layer, those with the most known neighbours first, so that every choice rests "
         "on as much as possible. A Gaussian weight lets near neighbours count more than far ones.",
@@ -164,17 +164,69 @@ EXPLANATION = Explanation(
             r"The weights, as Efros and Leung chose them.",
         ),
     ),
-    fails=("TO WRITE",),
+    fails=(
+        "*Verbatim copies.* The first pixels are a piece of the crop, so one place of it matches them perfectly, and a "
+        "tolerance of a part of nothing is nothing: the crop is copied outwards as it is until its border is reached. "
+        "Only then does the texture become new, and even there by pieces, the larger the wider the window. The "
+        "verbatim share tells how many pixels were copied along with their left or upper neighbour. Grow a texture "
+        "that is clearly larger than the crop, and look at what surrounds the copy in its middle.",
+        "*Garbage.* Once growth has come to a place that the crop hardly knows, the best matches are poor ones, what "
+        "they bring matches still less, and a smear or one repeated detail spreads to the border. It happens with "
+        "small windows, with crops that are not alike everywhere, and with crops that hold an element only once. Try "
+        "another seed, a wider window or a larger crop.",
+        "It is slow, as every pixel is searched for in the whole crop, and it knows nothing larger than its window. "
+        "For sand, plaster, granite and other micro-textures random phase noise is done at once, and fails in none of "
+        "these ways.",
+    ),
     figures=(
         Figure(
-            "A",
-            "A.",
-            (Exhibit("efros-leung", (("tiles02", "0,0,96,96"),), {"width": 128, "height": 128, "seed": 1}),),
+            "Structure that random phases lose",
+            "Stones come back as stones. The copy map wears the colours of its key: in the middle the crop as it is, "
+            "around it smaller pieces and single pixels from all over the crop.",
+            (
+                Exhibit(
+                    "efros-leung",
+                    (("gravel_gray", "100,100,96,96"),),
+                    {"width": 160, "height": 160, "seed": 1},
+                    ("crop", "texture", "copy-map", "copy-map-key", "order"),
+                    "Efros–Leung",
+                ),
+                Exhibit(
+                    "rpn",
+                    (("gravel_gray", "100,100,96,96"),),
+                    {"width": 160, "height": 160, "seed": 1},
+                    ("texture",),
+                    "random phase noise",
+                ),
+            ),
         ),
         Figure(
-            "B",
-            "B.",
-            (Exhibit("efros-leung", (("tiles02", "0,0,96,96"),), {"width": 128, "height": 128, "seed": 1}),),
+            "Three windows",
+            "A window must see what it is to arrange. With 3 × 3 pixels joints are lines that lead nowhere; with 9 × 9 "
+            "they meet; with 17 × 17 there are bricks again, cut from the crop in large pieces.",
+            tuple(
+                Exhibit(
+                    "efros-leung",
+                    (("brick_gray", "100,30,64,64"),),
+                    {"width": 128, "height": 128, "half_patch": half_patch, "seed": 1},
+                    ("crop", "texture", "copy-map") if half_patch == 1 else ("texture", "copy-map"),
+                    f"{2 * half_patch + 1} × {2 * half_patch + 1} pixels",
+                )
+                for half_patch in (1, 4, 8)
+            ),
+        ),
+        Figure(
+            "Garbage grows",
+            "Leaves of a kind that occur once, of a size that no window sees: beyond the copy in the middle one leaf's "
+            "surface spreads and never ends.",
+            (
+                Exhibit(
+                    "efros-leung",
+                    (("leaves_forest_floor", "200,200,64,64"),),
+                    {"width": 128, "height": 128, "seed": 1},
+                    ("crop", "texture", "copy-map"),
+                ),
+            ),
         ),
     ),
 )
