@@ -95,7 +95,8 @@ def test_a_random_phase_texture_lies_at_nothing_whatever_it_was_made_from(name):
     [
         ("grass_gray", 0.01, 0.03), ("grass_jungle002", 0.01, 0.03), ("dirt003", 0.01, 0.03),
         ("gravel_gray", 0.02, 0.04), ("towel_red", -0.01, 0.03), ("paper_mamurk_a1", -0.01, 0.03),
-        ("brick_gray", 0.12, 0.36), ("crazy_paving001", 0.2, 0.26), ("leaves_forest_floor", 0.12, 0.31), ("soil_ground010", 0.08, 0.13),
+        ("brick_gray", 0.12, 0.36), ("crazy_paving001", 0.2, 0.26),
+        ("leaves_forest_floor", 0.12, 0.31), ("soil_ground010", 0.08, 0.13),
     ],
 )  # fmt: skip
 def test_grass_and_gravel_lie_low_bricks_and_cobbles_high_and_soil_is_a_false_alarm(name, low, high):
