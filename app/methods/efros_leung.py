@@ -181,19 +181,19 @@ EXPLANATION = Explanation(
     figures=(
         Figure(
             "Structure that random phases lose",
-            "Stones come back as stones. The copy map wears the colours of its key: in the middle the crop as it is, "
-            "around it smaller pieces and single pixels from all over the crop.",
+            "Slabs and joints come back as slabs and joints. The copy map wears the colours of its key: where growth "
+            "began, a large piece of the crop as it is; further out smaller ones, and single pixels from everywhere.",
             (
                 Exhibit(
                     "efros-leung",
-                    (("gravel_gray", "100,100,96,96"),),
+                    (("crazy_paving001", "100,100,96,96"),),
                     {"width": 160, "height": 160, "seed": 1},
                     ("crop", "texture", "copy-map", "copy-map-key", "order"),
                     "Efros–Leung",
                 ),
                 Exhibit(
                     "rpn",
-                    (("gravel_gray", "100,100,96,96"),),
+                    (("crazy_paving001", "100,100,96,96"),),
                     {"width": 160, "height": 160, "seed": 1},
                     ("texture",),
                     "random phase noise",
