@@ -59,16 +59,21 @@ class Catalogue:
         self._intake = intake
         self._settings = settings
         self._samples_are_in = threading.Event()
+        self.making = settings.catalogue
+        """Whether what is missing is about to be made here."""
 
     def keep(self, closing: threading.Event) -> None:
         """Bring the bundled samples in and then, where the settings want it, make what is missing, one at a time."""
-        self._intake.add_bundled(closing)
-        self._samples_are_in.set()
+        try:
+            self._intake.add_bundled(closing)
+        finally:
+            self._samples_are_in.set()
         if self._settings.catalogue:
             try:
                 self.fill(closing)
             except Exception:
                 log.exception("the catalogue could not be made; the next start tries again")
+            self.making = False
 
     def fill(self, closing: threading.Event, *, again: bool = False, at_once: int = 1, told: Told = _silent) -> Filled:
         """Make what is missing or failed; nothing is handed to the engine while something waits there.

@@ -108,7 +108,12 @@ def _standing_in(service: Service, exhibit: Exhibit, made: Experiment | None) ->
     page = f"/experiments/{made.id}" if made is not None else ""
     size = experiment.parameters["width"], experiment.parameters["height"]
     texture = Shown(
-        exhibit.label or label(exhibit.method), "", page, *size, change=change_url(experiment), state=_state(made)
+        exhibit.label or label(exhibit.method),
+        "",
+        page,
+        *size,
+        change=change_url(experiment),
+        state=_state(made, service.catalogue.making),
     )
     return [*(_crops(service, experiment) if "crop" in exhibit.show else ()), texture]
 
@@ -120,7 +125,7 @@ def _crops(service: Service, experiment: Experiment) -> Iterator[Shown]:
     yield Shown(SAMPLE, "", f"/samples/{sample.id}", source.crop.width, source.crop.height, crop=crop)
 
 
-def _state(made: Experiment | None) -> str:
+def _state(made: Experiment | None, making: bool) -> str:
     if made is None:
-        return "Not made yet"
+        return "Being made" if making else "Not made yet"
     return "Being made" if not made.status.finished else made.error or "It was cancelled."
