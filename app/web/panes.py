@@ -1,5 +1,6 @@
 """The pictures of an experiment as its page shows them, with what was measured of each."""
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -83,13 +84,14 @@ def input_titles(experiment: Experiment, word: str = "sample") -> list[str]:
 
 
 def facts(experiment: Experiment) -> Iterator[tuple[str, str]]:
-    """What the method found out, as (title, value with its unit)."""
+    """What the method found out, as (title, value with its unit); titles that clash say which picture they mean."""
     found = experiment.diagnostics.get("facts", [])
-    titles = {output.name: output.title for output in experiment.outputs}
-    several = len({fact["output"] for fact in found}) > 1
+    pictures = {output.name: output.title for output in experiment.outputs}
+    times = Counter(fact["title"] for fact in found)
     for fact in found:
-        about = titles.get(fact["output"], fact["output"])
-        title = f"{about}: {fact['title'][0].lower()}{fact['title'][1:]}" if several else fact["title"]
+        title = fact["title"]
+        if times[title] > 1:
+            title = f"{pictures.get(fact['output'], fact['output'])}: {title[0].lower()}{title[1:]}"
         yield title, f"{_number(fact['value'])} {fact['unit']}".rstrip()
 
 

@@ -138,7 +138,8 @@ export class Crop {
         if (!typed) return;
         this.shown = fitted(typed, side, this.size);
         this.draw();
-        this.form.dispatchEvent(new CustomEvent("crop"));
+        // What does not fit yet is told when it has been made to, once the field is left.
+        if (SIDES.every((each) => typed[each] === this.shown[each])) this.form.dispatchEvent(new CustomEvent("crop"));
       });
       this.fields[side].addEventListener("change", () => this.write(this.shown));
     }
