@@ -28,7 +28,7 @@ Double = NDArray[np.float64]
 Index = NDArray[np.intp]
 
 PRODUCT = 1 << 18  # multiplications in one of them, few enough for BLAS to stay in the calling thread
-BATCH = 1 << 30  # multiplications for a batch of patches: a few tenths of a second
+BATCH = 1 << 29  # multiplications for a batch of patches: a tenth of a second or two
 DISTANCES = 1 << 23  # in a batch, 32 MB
 PAIRS = 4096  # patches measured in double precision at a time
 OUTSIDE = 1e30  # stands for s² beyond the image: a patch that is known there is far from any
