@@ -22,19 +22,17 @@ TEMPLATES.env.lstrip_blocks = True
 
 
 def label(method: str) -> str:
-    """Name a method briefly, as people do: by the short part of its title that holds its name, or by its name.
+    """Name a method briefly, as people do: by the part of its title that holds its name's words, or by its name.
 
     Examples
     --------
-    >>> label("rpn"), label("rayleigh"), label("heeger-bergen")
-    ('RPN', 'Rayleigh', 'Heeger–Bergen')
+    >>> [label(name) for name in ("rpn", "mix", "modulus-phase", "rayleigh", "heeger-bergen", "efros-leung")]
+    ['RPN', 'Mix', 'Modulus and phase', 'Rayleigh', 'Heeger–Bergen', 'Efros–Leung']
     """
-    head, _, tail = METHODS[method].title.partition(" (")
-    for part in (tail.removesuffix(")"), head):
-        words = re.split(r"\W+", part.lower())
-        if len(words) <= 3 and set(method.split("-")) <= set(words):
-            return part
-    return method.replace("-", " ").capitalize()
+    words = r"\W+(?:\w+\W+)?".join(method.split("-"))
+    found = re.search(rf"\b{words}\b", METHODS[method].title, re.IGNORECASE)
+    name = found[0] if found else method.replace("-", " ")
+    return name[:1].upper() + name[1:]
 
 
 def meter_place(delta: float) -> float:
