@@ -144,7 +144,7 @@ FIGURES = (
                     SMALL_GRAVEL,
                     {"width": 128, "height": 128, "half_patch": 4, "seed": 1},
                     PAIR,
-                    "window of 9",
+                    "Window of 9",
                 ),
                 *(
                     Exhibit(
@@ -152,7 +152,7 @@ FIGURES = (
                         SMALL_GRAVEL,
                         {"width": 128, "height": 128, "half_patch": half, "seed": 1},
                         TEXTURE,
-                        f"window of {2 * half + 1}",
+                        f"Window of {2 * half + 1}",
                     )
                     for half in (7, 10)
                 ),
@@ -168,8 +168,8 @@ FIGURES = (
             "Nine seeds. No two agree anywhere, and all are the same stone: whoever needs a texture may take the first "
             "one, without looking.",
             (
-                Exhibit("rpn", GRANITE, {"seed": 1}, PAIR, "seed 1"),
-                *(Exhibit("rpn", GRANITE, {"seed": seed}, TEXTURE, f"seed {seed}") for seed in range(2, 10)),
+                Exhibit("rpn", GRANITE, {"seed": 1}, PAIR, "Seed 1"),
+                *(Exhibit("rpn", GRANITE, {"seed": seed}, TEXTURE, f"Seed {seed}") for seed in range(2, 10)),
             ),
         ),
     ),

@@ -56,7 +56,9 @@ EXPLANATION = Explanation(
             (
                 Exhibit("rpn", (("two_sinusoids", "0,0,256,256"),), {"seed": 1}),
                 *(
-                    Exhibit("adsn", (("two_sinusoids", "0,0,256,256"),), {"seed": seed}, ("texture",), f"seed {seed}")
+                    Exhibit(
+                        "adsn", (("two_sinusoids", "0,0,256,256"),), {"seed": seed}, ("texture",), f"ADSN, seed {seed}"
+                    )
                     for seed in (5, 15)
                 ),
             ),

@@ -67,8 +67,8 @@ EXPLANATION = Explanation(
             "The same random phase, added to the phases of all channels, and put in their place: the second makes red, "
             "green and blue oscillate together, and the colours are others.",
             (
-                Exhibit("rpn", LEAVES, {"seed": 1}, label="added"),
-                Exhibit("rpn", LEAVES, {"seed": 1, "phase": "replace"}, ("texture",), "in their place"),
+                Exhibit("rpn", LEAVES, {"seed": 1}, label="Added"),
+                Exhibit("rpn", LEAVES, {"seed": 1, "phase": "replace"}, ("texture",), "In their place"),
             ),
         ),
         Figure(
@@ -77,7 +77,7 @@ EXPLANATION = Explanation(
             "component, and can be put back.",
             (
                 Exhibit("rpn", PLASTER, {"seed": 1}, ("crop", "smooth", "texture")),
-                Exhibit("rpn", PLASTER, {"seed": 1, "add_smooth": True}, ("texture",), "with the smooth component"),
+                Exhibit("rpn", PLASTER, {"seed": 1, "add_smooth": True}, ("texture",), "With the smooth component"),
             ),
         ),
         Figure(

@@ -87,7 +87,8 @@ def _columns(starts: Sequence[bool], count: int) -> int:
 
 def _caption(exhibit: Exhibit, name: str, title: str, *, first: bool) -> str:
     if name == "texture":
-        return exhibit.label or label(exhibit.method)
+        plain = title if exhibit.method in exhibit.show else label(exhibit.method)  # a texton is no texture
+        return exhibit.label or plain
     words = title.replace("Crop", SAMPLE) if name.startswith("crop") else title
     return f"{words}, {exhibit.label}" if first and exhibit.label and "texture" not in exhibit.show else words
 
