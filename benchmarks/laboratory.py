@@ -84,7 +84,7 @@ def cases() -> dict[str, Case]:
     return {
         "heeger-bergen 512²": Case("heeger-bergen", 512, {}, "one pair of transforms", pair, 5),
         "efros-leung 96² → 128²": Case(
-            "efros-leung", 96, texture, "one pass as a matrix product", product(128**2, 88**2, 9), 3
+            "efros-leung", 96, texture, "one pass as a matrix product", product(128**2, 96**2, 9), 3
         ),
         "dsn 1024², n = 10": Case("dsn", 1024, {"order": 10}, "one pair of transforms", transforms(1024, 1, 1)),
         "dsn 1024², n = 10⁷": Case("dsn", 1024, {"order": 10**7}, "one pair of transforms", transforms(1024, 1, 1)),

@@ -73,7 +73,9 @@ def test_a_method_explains_itself(method: Method) -> None:
     assert explanation.fails
     assert len(explanation.figures) >= 2
     for formula in explanation.formulas:
-        assert convert(formula.latex).startswith("<math")
+        made = convert(formula.latex)
+        assert made.startswith("<math")
+        assert "\\" not in made, "a command that was not understood"
     keys = [reference.key for reference in method.references]
     assert len(set(keys)) == len(keys) > 0
 

@@ -13,7 +13,9 @@ from uuid import uuid4
 import psycopg
 import pytest
 
+from app.experiments.model import Sample
 from app.store.sql import SqlStore
+from tests.store.records import a_sample
 
 PROGRAMS = sorted(Path("/usr/lib/postgresql").glob("*/bin"))
 UNPRIVILEGED = "nobody"  # PostgreSQL refuses to run as root
@@ -79,3 +81,10 @@ def open_store(store_url: str) -> Iterator[Callable[[], SqlStore]]:
 @pytest.fixture
 def store(open_store: Callable[[], SqlStore]) -> SqlStore:
     return open_store()
+
+
+@pytest.fixture
+def sample(store: SqlStore) -> Sample:
+    sample = a_sample()
+    store.add_sample(sample)
+    return sample

@@ -1,57 +1,16 @@
 """What every experiment store promises, whatever database is below it."""
 
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
 from datetime import UTC, datetime, timedelta
-from itertools import count
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from app.errors import ConflictError, DeletedError, InvalidInputError, NotFoundError
-from app.experiments.model import Experiment, ExperimentInput, Output, Sample, Status
-from app.images.crop import Rectangle
+from app.experiments.model import Experiment, Sample, Status
 from app.store.sql import SqlStore
-
-START = datetime(2026, 3, 1, 12, 0, 0, 123456, tzinfo=UTC)
-NUMBERS = count()
-MEASURED = {"structure": {"inputs": [0.01], "outputs": [-0.002]}, "facts": [{"name": "radius", "value": 3.5}]}
-
-
-def a_sample(**values: object) -> Sample:
-    number = next(NUMBERS)
-    sample = Sample(f"sample{number}", f"{number:064x}", 640, 427, 3, 8, False, START)
-    return replace(sample, **values)
-
-
-def an_experiment(sample: Sample, **values: object) -> Experiment:
-    number = next(NUMBERS)
-    inputs = (ExperimentInput(sample.id, Rectangle(1, 2, 30, 40)),)
-    parameters = {"width": 64, "height": 32, "seed": 2**53 - 1, "alpha": 0.1, "window": "bump", "σ": None}
-    experiment = Experiment(f"experiment{number}", "rpn", inputs, parameters, True, "0wner", START)
-    return replace(experiment, **values)
-
-
-def an_output(name: str = "texture", **values: object) -> Output:
-    return replace(Output(name, "Texture", "image/png", 64, 32, 5 << 30, f"{next(NUMBERS):064x}"), **values)
-
-
-@pytest.fixture
-def sample(store: SqlStore) -> Sample:
-    sample = a_sample()
-    store.add_sample(sample)
-    return sample
-
-
-def succeeded(store: SqlStore, sample: Sample, **values: object) -> Experiment:
-    experiment = an_experiment(sample, **values)
-    store.add(experiment)
-    store.start(experiment.id)
-    made = [an_output(kind="texture"), an_output("crop"), an_output(".thumbnail-crop")]
-    store.succeed(experiment.id, made, {"b": 0.5, "a": 0.25}, MEASURED)
-    return store.get(experiment.id)
+from tests.store.records import START, a_sample, an_experiment, an_output, succeeded
 
 
 def test_gives_samples_back_as_they_were(store: SqlStore) -> None:
@@ -236,64 +195,6 @@ def test_only_unused_old_uploads_are_removed(store: SqlStore, sample: Sample) ->
     store.delete(experiment.id)
     assert store.remove_unused_samples(later) == [sample]
     assert store.used([unused.digest, sample.digest, young.digest, bundled.digest]) == {young.digest, bundled.digest}
-
-
-def test_a_sample_is_never_lost_to_a_new_experiment(store: SqlStore, open_store: Callable[[], SqlStore]) -> None:
-    """Removing unused samples while experiments of them are added: whichever comes first, both agree."""
-    other = open_store()
-    samples = [a_sample() for _ in range(20)]
-    for sample in samples:
-        store.add_sample(sample)
-
-    def adding(sample: Sample) -> bool:
-        try:
-            other.add(an_experiment(sample))
-        except NotFoundError:
-            return False
-        return True
-
-    with ThreadPoolExecutor(2) as pool:
-        removing = pool.submit(store.remove_unused_samples, START + timedelta(days=1))
-        added = list(pool.map(adding, reversed(samples)))
-        removed = {sample.id for sample in removing.result()}
-    assert {sample.id for sample, kept in zip(reversed(samples), added, strict=True) if not kept} == removed
-
-
-def test_several_processes_may_make_the_schema_at_once(store_url: str) -> None:
-    with ThreadPoolExecutor(6) as pool:
-        stores = list(pool.map(lambda _: SqlStore(store_url), range(6)))
-    for each in stores:
-        each.add_sample(a_sample())
-        each.close()
-
-
-def test_writers_wait_for_one_another(store: SqlStore, sample: Sample, open_store: Callable[[], SqlStore]) -> None:
-    experiments = [an_experiment(sample) for _ in range(40)]
-    stores = [store, open_store()]
-
-    def whole_life(number: int) -> bool:
-        mine = stores[number % 2]
-        mine.add(experiments[number])
-        mine.start(experiments[number].id)
-        return mine.succeed(experiments[number].id, [an_output()], {}, {})
-
-    with ThreadPoolExecutor(4) as pool:
-        assert all(pool.map(whole_life, range(40)))
-    assert store.counts()["succeeded"] == 40
-
-
-def test_one_of_two_simultaneous_ends_wins(store: SqlStore, sample: Sample, open_store: Callable[[], SqlStore]) -> None:
-    other = open_store()
-    for _ in range(10):
-        experiment = an_experiment(sample)
-        store.add(experiment)
-        store.start(experiment.id)
-        with ThreadPoolExecutor(2) as pool:
-            success = pool.submit(store.succeed, experiment.id, [an_output()], {}, {})
-            cancel = pool.submit(other.cancel, experiment.id)
-            assert success.result() != cancel.result()
-        recorded = store.get(experiment.id)
-        assert (recorded.status is Status.SUCCEEDED) == success.result() == bool(recorded.outputs)
 
 
 @settings(max_examples=15, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.function_scoped_fixture])

@@ -1,0 +1,40 @@
+"""Samples, experiments and outputs to put into a store."""
+
+from dataclasses import replace
+from datetime import UTC, datetime
+from itertools import count
+
+from app.experiments.model import Experiment, ExperimentInput, Output, Sample
+from app.images.crop import Rectangle
+from app.store.sql import SqlStore
+
+START = datetime(2026, 3, 1, 12, 0, 0, 123456, tzinfo=UTC)
+NUMBERS = count()
+MEASURED = {"structure": {"inputs": [0.01], "outputs": [-0.002]}, "facts": [{"name": "radius", "value": 3.5}]}
+
+
+def a_sample(**values: object) -> Sample:
+    number = next(NUMBERS)
+    sample = Sample(f"sample{number}", f"{number:064x}", 640, 427, 3, 8, False, START)
+    return replace(sample, **values)
+
+
+def an_experiment(sample: Sample, **values: object) -> Experiment:
+    number = next(NUMBERS)
+    inputs = (ExperimentInput(sample.id, Rectangle(1, 2, 30, 40)),)
+    parameters = {"width": 64, "height": 32, "seed": 2**53 - 1, "alpha": 0.1, "window": "bump", "σ": None}
+    experiment = Experiment(f"experiment{number}", "rpn", inputs, parameters, True, "0wner", START)
+    return replace(experiment, **values)
+
+
+def an_output(name: str = "texture", **values: object) -> Output:
+    return replace(Output(name, "Texture", "image/png", 64, 32, 5 << 30, f"{next(NUMBERS):064x}"), **values)
+
+
+def succeeded(store: SqlStore, sample: Sample, **values: object) -> Experiment:
+    experiment = an_experiment(sample, **values)
+    store.add(experiment)
+    store.start(experiment.id)
+    made = [an_output(kind="texture"), an_output("crop"), an_output(".thumbnail-crop")]
+    store.succeed(experiment.id, made, {"b": 0.5, "a": 0.25}, MEASURED)
+    return store.get(experiment.id)
