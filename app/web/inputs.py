@@ -16,6 +16,7 @@ START = 512  # pixels of a side of the first crop, at most
 SIDES = ("x", "y", "width", "height")
 ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
 FOUR_NUMBERS = "A crop is four whole numbers: x, y, width and height in pixels."
+OR_NONE = " Left empty, all four of them, it is a region that suits."
 
 
 @dataclass(frozen=True)
@@ -161,5 +162,5 @@ def _crop(sample: Sample, numbers: list[str], field: str, errors: dict[str, str]
     except InvalidInputError as error:
         errors[field] = error.message
     except ValueError:
-        errors[field] = FOUR_NUMBERS
+        errors[field] = FOUR_NUMBERS + (OR_NONE if field != "crop" else "")
     return None

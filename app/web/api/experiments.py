@@ -35,7 +35,7 @@ class ExperimentBody(Body):
                     "title": method.title,
                     "properties": {
                         "method": {"const": method.name},
-                        "inputs": {"minItems": len(method.inputs), "maxItems": len(method.inputs)},
+                        "inputs": {"minItems": len(method.inputs), "maxItems": len(method.inputs) + method.more},
                         "parameters": parameters_schema(method.name),
                     },
                 }
