@@ -20,7 +20,7 @@ class Group:
         return tuple(METHODS[name] for name in self.names if name in METHODS)
 
 
-GROUPS = (
+TOLD = (
     Group(
         "Random phase and Gaussian models",
         "All they know of a sample is its mean and its Fourier modulus. They give a texture of any size at once, and "
@@ -39,3 +39,9 @@ GROUPS = (
         ("heeger-bergen", "efros-leung"),
     ),
 )
+
+
+def groups() -> tuple[Group, ...]:
+    """The groups that have methods; those that stand in none come last."""
+    rest = tuple(name for name in METHODS if not any(name in group.names for group in TOLD))
+    return tuple(group for group in (*TOLD, Group("More", "", rest)) if group.methods)

@@ -9,7 +9,7 @@ from app.errors import AppError
 from app.experiments.model import Experiment
 from app.experiments.service import Service
 from app.gallery.exhibits import teaser
-from app.gallery.groups import GROUPS, Group
+from app.gallery.groups import Group, groups
 from app.methods.explanation import Exhibit
 from app.methods.fields import FormField, fields
 from app.methods.model import Method
@@ -37,7 +37,7 @@ def overview(request: Request, service: ServiceDep) -> Response:
     def cards(group: Group) -> list[Card]:
         return [Card(declared, shown(service, _pair(declared))) for declared in group.methods]
 
-    return render(request, "methods.html", {"groups": [(group, cards(group)) for group in GROUPS]})
+    return render(request, "methods.html", {"groups": [(group, cards(group)) for group in groups()]})
 
 
 @router.get("/methods/{name}.bib")

@@ -18,7 +18,7 @@ from app.experiments.model import Sample, Status
 from app.experiments.service import Service
 from app.experiments.submission import NewExperiment, NewInput, prepare
 from app.gallery.exhibits import exhibits
-from app.gallery.groups import GROUPS
+from app.gallery.groups import groups
 from app.gallery.identity import identifier
 from app.images.crop import Rectangle
 from app.methods.explanation import Exhibit
@@ -95,8 +95,11 @@ def test_the_identifier_is_a_function_of_what_is_computed() -> None:
     assert len({identifier(exhibit) for exhibit in (WAVES, *others)}) == 4
 
 
-def test_every_method_is_told_of_once() -> None:
-    assert sorted(name for group in GROUPS for name in group.names) == sorted(METHODS)
+def test_every_method_is_told_of_once_also_one_that_stands_in_no_group(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(METHODS, "new", METHODS["rpn"])
+    found = groups()
+    assert sorted(name for group in found for name in group.names) == sorted(METHODS)
+    assert found[-1].names == ("new",)
 
 
 def test_made_twice_it_gives_the_same_bytes(filled: Service) -> None:
