@@ -19,6 +19,7 @@ class Params(StillParams):
     levels: int | None = Field(None, ge=1, title="Levels", description="How many; default: as many as fit.")
     kind: Literal["one", "two"] = Field("two", title="Kind", description="Which.")
     exact: bool = Field(True, title="Exact", description="Whether.")
+    shares: str = Field("", max_length=5, title="Shares", description="How much of each.")
 
 
 @pytest.fixture
@@ -28,11 +29,12 @@ def method() -> Method:
 
 def test_every_kind_of_parameter_becomes_a_field() -> None:
     found = {field.name: field for field in fields(Params)}
-    assert [found[name].kind for name in ("scale", "levels", "kind", "exact")] == [
+    assert [found[name].kind for name in ("scale", "levels", "kind", "exact", "shares")] == [
         "number",
         "integer",
         "choice",
         "switch",
+        "text",
     ]
     assert found["scale"].advanced
     assert (found["scale"].minimum, found["scale"].maximum, found["scale"].default) == ("0", "2", "0.5")
@@ -42,7 +44,7 @@ def test_every_kind_of_parameter_becomes_a_field() -> None:
 
 
 def test_shared_parameters_are_asked_once(method: Method) -> None:
-    assert [field.name for field in own_fields(method)] == ["scale", "levels", "kind", "exact"]
+    assert [field.name for field in own_fields(method)] == ["scale", "levels", "kind", "exact", "shares"]
     assert form_name(method, "seed") == "seed"
     assert form_name(method, "scale") == "test.scale"
 
@@ -70,6 +72,12 @@ def test_every_field_at_fault_gets_its_own_message(method: Method) -> None:
     assert set(parsed.errors) == {"seed", "test.scale", "test.levels", "test.kind"}
     assert parsed.errors["test.kind"] == "Kind is one of: one, two."
     assert parsed.errors["test.levels"] == "Levels is a whole number from 1 on."
+
+
+def test_a_text_at_fault_gets_the_words_of_what_refused_it(method: Method) -> None:
+    assert parse(method, {"test.shares": "1, 2, 3"}).errors == {
+        "test.shares": "Shares: string should have at most 5 characters."
+    }
 
 
 @pytest.mark.parametrize("name", METHODS)

@@ -1,0 +1,72 @@
+"""What the page of an experiment says beside its pictures, also of experiments made before anything was measured."""
+
+from dataclasses import replace
+from datetime import UTC, datetime
+from typing import Any
+
+import pytest
+
+from app.experiments.model import Experiment, ExperimentInput, Output
+from app.images.crop import Rectangle
+from app.web.panes import crop_panes, facts, gallery, steps, texture_pane, tiling
+
+
+def output(name: str, kind: Any = "view") -> Output:
+    return Output(name, name.capitalize(), "image/png", 8, 6, 100, "0" * 64, kind)
+
+
+OLD = Experiment(
+    id="old",
+    method="rpn",
+    inputs=(ExperimentInput("gravel", Rectangle(0, 0, 8, 6)),),
+    parameters={"width": 8, "height": 6, "seed": 0},
+    listed=True,
+    owner="",
+    created_at=datetime(2026, 1, 1, tzinfo=UTC),
+    outputs=(output("texture"), output("crop"), output("spot"), output(".texture-deep")),
+)
+
+
+def fact(about: str, title: str, value: float = 1.0, unit: str = "") -> dict[str, Any]:
+    return {"output": about, "name": title.lower(), "title": title, "value": value, "unit": unit}
+
+
+def test_an_experiment_of_the_first_version_has_its_pictures_and_no_numbers() -> None:
+    """Its outputs have no kind and nothing was measured."""
+    assert [(pane.title, pane.delta) for pane in [*crop_panes(OLD), texture_pane(OLD)]] == [
+        ("Sample", None),
+        ("RPN", None),
+    ]
+    assert gallery(OLD) == []
+    assert [pane.title for pane in steps(OLD)] == ["Texture", "Crop", "Spot"]
+    assert list(facts(OLD)) == []
+
+
+def test_each_texture_has_its_own_index() -> None:
+    """They are in the order of the textures among the outputs, whatever stands between."""
+    outputs = (output("texture", "texture"), output("crop"), output("n-10", "texture"), output("n-100", "texture"))
+    measured = {"structure": {"inputs": [0.3], "outputs": [0.01, 0.02, 0.03]}}
+    made = replace(OLD, outputs=outputs, diagnostics=measured)
+    assert texture_pane(made).delta == 0.01
+    assert [(pane.title, pane.delta) for pane in gallery(made)] == [("N-10", 0.02), ("N-100", 0.03)]
+    assert [pane.delta for pane in crop_panes(made)] == [0.3]
+
+
+def test_facts_name_their_picture_only_where_they_would_be_mistaken() -> None:
+    found = [fact("spot", "Radius", 12.0, "pixels"), fact("crop", "Share", 0.5), fact("texture", "Share", 0.25)]
+    made = replace(OLD, diagnostics={"facts": found})
+    assert list(facts(made)) == [("Radius", "12 pixels"), ("Crop: share", "0.5"), ("Texture: share", "0.25")]
+
+
+@pytest.mark.parametrize(
+    ("seamless", "words"),
+    [
+        ([True], "The texture is toroidal"),
+        ([False], "edges of this texture do not meet"),
+        ([True, True], "These textures are toroidal"),
+        ([False, True], "Only one of the two"),
+        ([False, False], "edges of these textures do not meet"),
+    ],
+)
+def test_whether_textures_tile_is_said_of_one_and_of_two(seamless: list[bool], words: str) -> None:
+    assert words in tiling(seamless)
