@@ -10,6 +10,7 @@ from app.synthesis.adsn import adsn
 from app.synthesis.dsn import POINTS, counts, dsn, excess_kurtosis, impulses, shape, standard_spot
 from app.synthesis.spectral import random_spectrum
 from app.synthesis.spot_noise import asymptotic, sample_spot
+from tests.synthesis.stopping import stops_at
 
 LIKELY = 1e-3  # a seed is pinned; a p-value below this says that the law is wrong
 MANY = (256, 257)  # more pixels than 16-bit words take values: so their counts come from the table
@@ -188,16 +189,4 @@ def test_the_kurtosis_is_that_of_the_spots_values_over_the_whole_torus(size):
 
 @pytest.mark.parametrize("stop_at", [1, 3, 5])
 def test_what_the_progress_raises_stops_the_work(stop_at):
-    class StopError(Exception):
-        pass
-
-    calls = []
-
-    def progress(stage, part):
-        calls.append((stage, part))
-        if len(calls) == stop_at:
-            raise StopError
-
-    with pytest.raises(StopError):
-        dsn(sample_spot(image(16, 16), 16, 16), 10, progress=progress)
-    assert len(calls) == stop_at
+    stops_at(stop_at, lambda progress: dsn(sample_spot(image(16, 16), 16, 16), 10, progress=progress))

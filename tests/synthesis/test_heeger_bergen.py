@@ -8,6 +8,7 @@ from app.synthesis.periodic import periodic_component, smooth_component
 from app.synthesis.pyramid import SteerablePyramid
 from app.synthesis.team import Team
 from app.synthesis.work import Work
+from tests.synthesis.stopping import stops_at
 
 BOTH = pytest.mark.parametrize("edges", ["periodic", "mirror"])
 
@@ -192,19 +193,7 @@ def test_values_that_are_not_finite_are_refused(bad):
 @pytest.mark.parametrize("stop_at", [1, 5, 60, 200])
 @pytest.mark.parametrize("threads", [1, 2])
 def test_what_the_progress_raises_stops_the_work(stop_at, threads):
-    class StopError(Exception):
-        pass
-
-    calls = []
-
-    def progress(stage, part):
-        calls.append(stage)
-        if len(calls) == stop_at:
-            raise StopError
-
-    with pytest.raises(StopError):
-        heeger_bergen(blobs(), threads=threads, progress=progress)
-    assert len(calls) == stop_at
+    stops_at(stop_at, lambda progress: heeger_bergen(blobs(), threads=threads, progress=progress))
 
 
 def test_the_progress_of_every_stage_rises_to_one():

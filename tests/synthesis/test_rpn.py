@@ -11,6 +11,7 @@ from app.synthesis.adsn import adsn
 from app.synthesis.periodic import periodic_component, smooth_component
 from app.synthesis.rpn import rpn
 from app.synthesis.spot import centre, extend_spot
+from tests.synthesis.stopping import stops_at
 
 SIZES = [(1, 1), (1, 12), (12, 1), (2, 3), (16, 16), (16, 17), (17, 16), (37, 41), (130, 67)]
 
@@ -168,19 +169,7 @@ def test_the_result_tiles_without_a_seam():
 
 @pytest.mark.parametrize("stop_at", [1, 4, 9])
 def test_what_the_progress_raises_stops_the_work_at_once(stop_at):
-    class StopError(Exception):
-        pass
-
-    calls = []
-
-    def progress(stage, part):
-        calls.append((stage, part))
-        if len(calls) == stop_at:
-            raise StopError
-
-    with pytest.raises(StopError):
-        rpn(image(64, 64), 640, 640, threads=2, progress=progress)
-    assert len(calls) == stop_at
+    stops_at(stop_at, lambda progress: rpn(image(64, 64), 640, 640, threads=2, progress=progress))
 
 
 def test_the_progress_of_every_stage_rises_to_one():

@@ -9,6 +9,7 @@ from app.synthesis.luminance import luminance
 from app.synthesis.periodic import periodic_component
 from app.synthesis.spectral import random_spectrum
 from app.synthesis.texton import extend_texton, radii, texton, texton_noise
+from tests.synthesis.stopping import stops_at
 
 SIZES = [(1, 1), (1, 12), (12, 1), (2, 3), (16, 16), (16, 17), (37, 41)]
 LARGER = [(40, 51), (70, 90), (41, 52), (40, 130)]
@@ -212,18 +213,6 @@ def test_the_result_does_not_depend_on_the_threads():
 
 @pytest.mark.parametrize("stop_at", [1, 3, 5])
 def test_what_the_progress_raises_stops_the_work(stop_at):
-    class StopError(Exception):
-        pass
-
-    calls = []
-
-    def progress(stage, part):
-        calls.append((stage, part))
-        if len(calls) == stop_at:
-            raise StopError
-
     h = image(16, 16)
     spot, _ = made(h, 20, 20)
-    with pytest.raises(StopError):
-        texton_noise(h, spot, progress=progress)
-    assert len(calls) == stop_at
+    stops_at(stop_at, lambda progress: texton_noise(h, spot, progress=progress))
