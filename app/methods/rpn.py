@@ -38,8 +38,9 @@ EXPLANATION = Explanation(
         "Edges, and all that stands out from its surroundings, are alignments of phases: they are lost. Bricks, "
         "tiles, leaves and letters become a cloud of the right colours and grain. The structure meter says so "
         "beforehand; Heeger–Bergen keeps a little more, Efros–Leung copies such things.",
-        "A crop that changes from one side to the other (light, perspective) gives a texture with large stains: crop "
-        "a smaller, homogeneous region.",
+        "A texture has no places: a crop whose grain or light changes from one to another comes back as a mixture of "
+        "all, or with large stains. A steady slope of light is taken out with the smooth component; of other changes "
+        "crop a smaller, homogeneous region.",
     ),
     figures=(
         Figure(
