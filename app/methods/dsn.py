@@ -72,7 +72,7 @@ def check(sizes: Sequence[Size], params: DsnParams) -> None:
 def run(sources: Sequence[Source], params: DsnParams, context: Context) -> Iterator[Picture]:
     """The texture, the gallery of its convergence if it is asked for, and what was thrown where."""
     source = sources[0]
-    size = Size(source.pixels.shape[1], source.pixels.shape[0], source.pixels.shape[2])
+    size = source.size
     check([size], params)
     refuse_infinite(sources)
     height, width = params.height or size.height, params.width or size.width

@@ -94,7 +94,7 @@ def run(sources: Sequence[Source], params: EfrosLeungParams, context: Context) -
     """The texture; then where its pixels come from, and when they came."""
     source = sources[0]
     h, peak = source.pixels, source.peak
-    size = Size(h.shape[1], h.shape[0], h.shape[2])
+    size = sources[0].size
     check([size], params)
     refuse_infinite(sources)
     width, height = default_size([size])

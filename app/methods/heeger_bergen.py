@@ -11,7 +11,7 @@ from pydantic import Field
 from app.errors import InvalidInputError
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
 from app.methods.model import Context, Fact, Method, Picture, Size, Source, StillParams
-from app.methods.options import ADVANCED
+from app.methods.options import ADD_SMOOTH, ADVANCED, refuse_other_size
 from app.methods.pictures import crops, encode, refuse_infinite
 from app.methods.random_phase import INPUTS
 from app.methods.references import HEEGER_BERGEN as ARTICLE
@@ -62,14 +62,7 @@ class HeegerBergenParams(StillParams):
         "component; 'mirror' surrounds the crop by its mirror images, and keeps slow changes of light and colour.",
         json_schema_extra=ADVANCED,
     )
-    add_smooth: bool = Field(
-        False,
-        title="Add the smooth component",
-        description="Put the slow changes of light and colour across the crop, which periodic edges take out before "
-        "the synthesis, back in afterwards. Only for a texture of the crop's own size; it then no longer tiles "
-        "without a seam.",
-        json_schema_extra=ADVANCED,
-    )
+    add_smooth: bool = ADD_SMOOTH
 
 
 def check(sizes: Sequence[Size], params: HeegerBergenParams) -> None:
@@ -90,19 +83,15 @@ def check(sizes: Sequence[Size], params: HeegerBergenParams) -> None:
             "Only periodic edges take the smooth component out of the crop: take those, or do not add it.",
             "parameters.add_smooth",
         )
-    if params.add_smooth and (width, height) != (size.width, size.height):
-        raise InvalidInputError(
-            f"The smooth component has the crop's own size, {size.width} × {size.height} pixels, and cannot be added "
-            f"to a texture of {width} × {height}.",
-            "parameters.add_smooth",
-        )
+    if params.add_smooth:
+        refuse_other_size(size, width, height)
 
 
 def run(sources: Sequence[Source], params: HeegerBergenParams, context: Context) -> Iterator[Picture]:
     """The texture, how it came about, and the sub-bands of sample and texture."""
     source = sources[0]
-    height, width, channels = source.pixels.shape
-    check([Size(width, height, channels)], params)
+    height, width, _ = source.pixels.shape
+    check([source.size], params)
     refuse_infinite(sources)
     height, width = params.height or height, params.width or width
     context.progress("sample", 0.0)

@@ -152,7 +152,7 @@ class _Run:
 
 def run(sources: Sequence[Source], params: MixParams, context: Context) -> Iterator[Picture]:
     """The barycentre; then the path between two samples, or each one's own texture if there are more."""
-    check([Size(source.pixels.shape[1], source.pixels.shape[0], source.pixels.shape[2]) for source in sources], params)
+    check([source.size for source in sources], params)
     refuse_infinite(sources)
     with Team(context.threads) as team:
         yield from _Run(sources, params, context, team).pictures()

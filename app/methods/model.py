@@ -52,6 +52,15 @@ class Slot:
 
 
 @dataclass(frozen=True)
+class Size:
+    """Size of an input, known before its pixels are read."""
+
+    width: int
+    height: int
+    channels: int
+
+
+@dataclass(frozen=True)
 class Source:
     """One input as a method is given it: the crop's pixels.
 
@@ -60,6 +69,11 @@ class Source:
 
     pixels: NDArray[np.float32]
     peak: int
+
+    @property
+    def size(self) -> Size:
+        height, width, channels = self.pixels.shape
+        return Size(width, height, channels)
 
 
 @dataclass(frozen=True)
@@ -105,15 +119,6 @@ class Picture:
     png: bytes
     kind: Literal["texture", "view"] = "view"
     facts: tuple[Fact, ...] = ()
-
-
-@dataclass(frozen=True)
-class Size:
-    """Size of an input, known before its pixels are read."""
-
-    width: int
-    height: int
-    channels: int
 
 
 def first_size(sizes: Sequence[Size]) -> tuple[int, int]:

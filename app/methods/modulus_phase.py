@@ -52,7 +52,7 @@ def check(sizes: Sequence[Size], params: ModulusPhaseParams) -> None:
 
 def run(sources: Sequence[Source], params: ModulusPhaseParams, context: Context) -> Iterator[Picture]:
     """Both swapped pictures; then modulus and phase of each crop."""
-    sizes = [Size(source.pixels.shape[1], source.pixels.shape[0], source.pixels.shape[2]) for source in sources]
+    sizes = [source.size for source in sources]
     check(sizes, params)
     refuse_infinite(sources)
     width, height = common_size(sizes)

@@ -5,7 +5,8 @@ from typing import Literal
 from pydantic import Field
 from pydantic.config import JsonDict
 
-from app.methods.model import StillParams
+from app.errors import InvalidInputError
+from app.methods.model import Size, StillParams
 
 ADVANCED: JsonDict = {"advanced": True}
 
@@ -30,3 +31,28 @@ class SpotParams(StillParams):
         "0.1), 'gaussian' the profile of the TIP article (usual α: 0.2).",
         json_schema_extra=ADVANCED,
     )
+
+
+ADD_SMOOTH = Field(
+    False,
+    title="Add the smooth component",
+    description="Put the slow changes of light and colour across the crop, which are taken out before the synthesis, "
+    "back in afterwards. Only for a texture of the crop's own size; it then no longer tiles without a seam.",
+    json_schema_extra=ADVANCED,
+)
+
+
+def refuse_other_size(size: Size, width: int, height: int) -> None:
+    """Refuse to add the smooth component of a crop to a texture of another size.
+
+    Raises
+    ------
+    InvalidInputError
+        At ``parameters.add_smooth``.
+    """
+    if (width, height) != (size.width, size.height):
+        raise InvalidInputError(
+            f"The smooth component can be added only to a texture of the crop's own size, {size.width} × {size.height} "
+            f"pixels, and {width} × {height} is asked for: take that size, or leave the smooth component out.",
+            "parameters.add_smooth",
+        )

@@ -10,7 +10,7 @@ from pydantic import Field as Option
 from app.errors import InvalidInputError
 from app.images.png import PngWriter
 from app.methods.model import Context, Picture, Size, Slot, Source
-from app.methods.options import ADVANCED, SpotParams
+from app.methods.options import ADD_SMOOTH, ADVANCED, SpotParams, refuse_other_size
 from app.methods.pictures import log_modulus, refuse_infinite
 from app.synthesis.field import Field, Noise, row_blocks
 from app.synthesis.levels import Extent, Levels
@@ -45,14 +45,7 @@ class RandomPhaseParams(SpotParams):
         "they come back as a cross of streaks: turn it off to see what it is for.",
         json_schema_extra=ADVANCED,
     )
-    add_smooth: bool = Option(
-        False,
-        title="Add the smooth component",
-        description="Put the slow changes of light and colour across the crop, which are taken out before the "
-        "synthesis, back in afterwards. Only for a texture of the crop's own size; it then no longer tiles without a "
-        "seam.",
-        json_schema_extra=ADVANCED,
-    )
+    add_smooth: bool = ADD_SMOOTH
 
 
 def check(sizes: Sequence[Size], params: RandomPhaseParams) -> None:
@@ -65,12 +58,8 @@ def check(sizes: Sequence[Size], params: RandomPhaseParams) -> None:
         )
     size = sizes[0]
     width, height = params.width or size.width, params.height or size.height
-    if params.add_smooth and (width, height) != (size.width, size.height):
-        raise InvalidInputError(
-            f"The smooth component can be added only to a texture of the crop's own size, {size.width} × {size.height} "
-            f"pixels, and {width} × {height} is asked for: take that size, or leave the smooth component out.",
-            "parameters.add_smooth",
-        )
+    if params.add_smooth:
+        refuse_other_size(size, width, height)
 
 
 class _Run:
@@ -174,7 +163,7 @@ class _Run:
 def run(sources: Sequence[Source], params: RandomPhaseParams, context: Context, *, rayleigh: bool) -> Iterator[Picture]:
     """The texture, then the steps that lead to it."""
     source = sources[0]
-    check([Size(source.pixels.shape[1], source.pixels.shape[0], source.pixels.shape[2])], params)
+    check([source.size], params)
     refuse_infinite(sources)
     with Team(context.threads) as team:
         yield from _Run(source, params, context, team, rayleigh).pictures()

@@ -31,7 +31,7 @@ def check(sizes: Sequence[Size], params: StillParams) -> None:
 def run(sources: Sequence[Source], params: StillParams, context: Context) -> Iterator[Picture]:
     """The crop under the noise; then its random phase noise, without and with the same noise."""
     source = sources[0]
-    check([Size(source.pixels.shape[1], source.pixels.shape[0], source.pixels.shape[2])], params)
+    check([source.size], params)
     refuse_infinite(sources)
     h, peak = source.pixels, source.peak
     height, width = params.height or h.shape[0], params.width or h.shape[1]
