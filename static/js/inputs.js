@@ -5,6 +5,14 @@ import { Crop } from "./crop.js";
 const SMALL = 256; // pixels of a thumbnail's longer side, as on the home page
 const address = (sample, size) => `/api/v1/samples/${encodeURIComponent(sample)}/image?size=${size}`;
 
+let uploads = 0;
+
+/** Nothing is run while a photograph is on its way: it would be run without that one. */
+function count(change) {
+  uploads += change;
+  document.querySelector("button.main").disabled = uploads > 0;
+}
+
 class Further {
   constructor(root) {
     this.root = root;
@@ -94,6 +102,7 @@ class Further {
     body.append("file", input.files[0]);
     input.value = "";
     button.disabled = true;
+    count(1);
     this.status.textContent = "Sending …";
     try {
       const answer = await fetch("/api/v1/samples", { method: "POST", body });
@@ -106,6 +115,7 @@ class Further {
       this.status.textContent = lost ? "The connection broke: look whether you are online, and try again." : error.message;
     }
     button.disabled = false;
+    count(-1);
   }
 
   offer({ id, width, height }) {
@@ -123,3 +133,4 @@ for (const root of document.querySelectorAll("[data-input]")) {
   if (root.dataset.input === "1") new Crop(root);
   else new Further(root);
 }
+document.querySelector("#experiment > .visually-hidden").remove(); // stood in for the main button before those that show samples
