@@ -59,16 +59,17 @@ class Case:
     crop: int
     parameters: dict[str, Any]
     floor: str
-    work: Callable[[], None]
+    prepare: Callable[[], Callable[[], None]]  # its data are made when it is timed, not where memory is measured
     rounds: int = 7
+    everything: bool = False  # every picture, not the texture alone
 
-    def run(self, *, everything: bool = False) -> None:
-        """Make the texture; or the texture and every other picture."""
+    def run(self) -> None:
+        """Make the pictures."""
         entry = method(self.name)
         sources = [Source(np.roll(sample(self.crop), 31 * number, 1), 255) for number in range(len(entry.inputs))]
         params = entry.params(**self.parameters)
         pictures = entry.run(sources, params, Context(8, THREADS, lambda stage, fraction: None))
-        if everything:
+        if self.everything:
             for _ in pictures:
                 pass
         else:
@@ -77,21 +78,21 @@ class Case:
 
 def cases() -> dict[str, Case]:
     """What is measured, by its title."""
-    pair = transforms(512, 1, 1)
-    large = {"width": 1024, "height": 1024}
-    texture = {"width": 128, "height": 128}
-    strip = Case("mix", 512, {}, "transforms of 2 samples and 9 textures", transforms(512, 2, 9))
+    one = "one pair of transforms"
+    pair = partial(transforms, 1024, 1, 1)
+    many = {"order": 10**7}
+    large, small = {"width": 1024, "height": 1024}, {"width": 128, "height": 128}
+    search = partial(product, 128**2, 96**2, 9)
     return {
-        "heeger-bergen 512²": Case("heeger-bergen", 512, {}, "one pair of transforms", pair, 5),
-        "efros-leung 96² → 128²": Case(
-            "efros-leung", 96, texture, "one pass as a matrix product", product(128**2, 96**2, 9), 3
+        "heeger-bergen 512²": Case("heeger-bergen", 512, {}, one, partial(transforms, 512, 1, 1), 5),
+        "efros-leung 96² → 128²": Case("efros-leung", 96, small, "one pass as a matrix product", search, 3),
+        "dsn 1024², n = 10": Case("dsn", 1024, {"order": 10}, one, pair),
+        "dsn 1024², n = 10⁷": Case("dsn", 1024, many, one, pair),
+        "dsn 512² → 1024², n = 10⁷": Case("dsn", 512, large | many, one, pair),
+        "mix 512²": Case("mix", 512, {}, "transforms of 2 samples, 1 texture", partial(transforms, 512, 2, 1)),
+        "mix 512², strip of 8": Case(
+            "mix", 512, {}, "transforms of 2 samples, 9 textures", partial(transforms, 512, 2, 9), 7, True
         ),
-        "dsn 1024², n = 10": Case("dsn", 1024, {"order": 10}, "one pair of transforms", transforms(1024, 1, 1)),
-        "dsn 1024², n = 10⁷": Case("dsn", 1024, {"order": 10**7}, "one pair of transforms", transforms(1024, 1, 1)),
-        "dsn 512² → 1024², n = 10⁷": Case(
-            "dsn", 512, large | {"order": 10**7}, "one pair of transforms", transforms(1024, 1, 1)
-        ),
-        "mix 512², strip of 8": strip,
     }
 
 
@@ -101,13 +102,11 @@ def main() -> None:
     parser.add_argument("--memory-of", help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.memory_of:
-        case = cases()[options.memory_of]
-        print(above_idle(partial(case.run, everything=True)))
+        print(above_idle(cases()[options.memory_of].run))
         return
     print(f"{THREADS} threads, RGB; ratio to the floor: median, least–greatest; median times; peak memory above idle")
     for title, case in cases().items():
-        everything = case.name == "mix"
-        ratio = alternate(partial(case.run, everything=everything), case.work, case.rounds)
+        ratio = alternate(case.run, case.prepare(), case.rounds)
         command = [sys.executable, "-m", "benchmarks.laboratory", "--memory-of", title]
         memory = int(subprocess.run(command, check=True, capture_output=True, text=True).stdout) / MEGABYTE
         print(

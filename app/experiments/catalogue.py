@@ -24,6 +24,11 @@ UNMADE = {Status.FAILED, Status.CANCELLED}
 POLL_SECONDS = 0.1
 
 
+def is_exhibit(experiment: Experiment) -> bool:
+    """Whether it is the program's own: public though the archive does not list it."""
+    return experiment.owner == OWNER
+
+
 @dataclass(frozen=True)
 class Filled:
     """How many exhibits were made, could not be, were there already, and lack their sample in this installation."""

@@ -10,6 +10,7 @@ from fastapi import APIRouter, Form, Query, Request
 from fastapi.responses import RedirectResponse
 from starlette.responses import Response
 
+from app.experiments.catalogue import is_exhibit
 from app.experiments.model import Experiment, Sample, Status
 from app.experiments.ownership import new_token
 from app.experiments.service import Service
@@ -83,6 +84,7 @@ def _common(service: Service, experiment: Experiment, token: str | None) -> dict
         "sources": _sources(service, experiment),
         "subject": _subject(service, experiment),
         "owned": service.owns(experiment, token),
+        "hidden": not experiment.listed and not is_exhibit(experiment),
         "rows": list(_rows(experiment)),
         "edit_url": f"/samples/{experiment.inputs[0].sample}?{urlencode(address(experiment), safe=',:')}",
     }
@@ -215,7 +217,8 @@ def again(
         parameters["seed"] = secrets.randbelow(SEEDS)
     inputs = tuple(NewInput(source.sample, source.crop) for source in experiment.inputs)
     owner = token or new_token()
-    run = service.submit(NewExperiment(name, inputs, parameters, experiment.listed), owner)
+    listed = experiment.listed or is_exhibit(experiment)
+    run = service.submit(NewExperiment(name, inputs, parameters, listed), owner)
     other = name != experiment.method
     response = RedirectResponse(f"/compare/{experiment.id}/{run.id}" if other else f"/experiments/{run.id}", SEE_OTHER)
     remember_owner(request, response, owner)

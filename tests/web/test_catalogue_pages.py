@@ -76,3 +76,16 @@ def test_pages_need_no_script_and_no_inline_style(page: Page, path: str) -> None
     text = page(path)
     assert 'style="' not in text
     assert "<script" not in text
+
+
+def test_an_exhibit_is_public_and_so_is_what_is_run_from_it(gallery: httpx.Client) -> None:
+    """It is not in the archive, but nobody hid it: a new seed of it is listed as any other run is."""
+    link = re.search(r'href="(/experiments/figure-[0-9a-f]{16})"', gallery.get("/catalogue").text)
+    assert link is not None
+    page = gallery.get(link[1]).text
+    assert "unlisted" not in page
+    assert "noindex" not in page
+    answer = gallery.post(f"{link[1]}/again", data={"method": "rpn", "seed": "new"})
+    assert answer.status_code == 303
+    record = gallery.get(f"/api/v1{answer.headers['location']}").json()
+    assert record["listed"]

@@ -53,7 +53,9 @@ class ExperimentBody(Body):
     )
 
     method: str = Field(description="Name of a method.", json_schema_extra={"enum": list(METHODS)})
-    inputs: list[InputBody] = Field(min_length=1, max_length=8, description="As many as the method has.")
+    inputs: list[InputBody] = Field(
+        min_length=1, max_length=8, description="As many as the method needs, and at most `more_inputs` more."
+    )
     parameters: dict[str, Any] = Field(default_factory=dict, description="What is left out has its default.")
     listed: bool = Field(True, description="Whether the archive shows it; otherwise only its link leads to it.")
 
