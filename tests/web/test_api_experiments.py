@@ -4,6 +4,8 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
+from app.methods.registry import METHODS
+
 
 def test_an_experiment_is_accepted_at_once(site):
     with site.gate.closed():
@@ -205,3 +207,28 @@ def test_many_clients_at_once_are_all_served(site):
     with ThreadPoolExecutor(8) as pool:
         responses = list(pool.map(lambda seed: site.run(parameters={"seed": seed}), range(16)))
     assert [response.json()["status"] for response in responses] == ["succeeded"] * 16
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_every_method_runs_on_a_bundled_sample(site, name):
+    """As an experiment, whose record is complete and whose texture can be fetched; and in one call, with its bytes."""
+    crop = {"x": 4, "y": 8, "width": 32, "height": 24}
+    source = {"sample": "gravel_gray", "crop": crop}
+    count = len(METHODS[name].inputs)
+    record = site.finished(method=name, inputs=[source] * count, parameters={"seed": 3})
+    names = [output["name"] for output in record["outputs"]]
+    assert names[0] == "texture"
+    assert {"crop", *(f"crop-{number}" for number in range(2, count + 1))} <= set(names)
+    measured = record["diagnostics"]["structure"]
+    kinds = [output["kind"] for output in record["outputs"]]
+    assert (len(measured["inputs"]), len(measured["outputs"])) == (count, kinds.count("texture"))
+    texture = site.client.get(record["outputs"][0]["url"])
+    photograph = site.client.get("/api/v1/samples/gravel_gray/image").content
+    suffixes = ["", *(f"-{number}" for number in range(2, count + 1))]
+    answer = site.client.post(
+        "/api/v1/synthesize",
+        data={"method": name, "seed": "3", **{f"crop{suffix}": "4,8,32,24" for suffix in suffixes}},
+        files={f"file{suffix}": ("photograph.png", photograph) for suffix in suffixes},
+    )
+    assert answer.status_code == 200, answer.text
+    assert answer.content == texture.content
