@@ -51,14 +51,14 @@ class Site:
     client: httpx.Client = field(repr=False)
 
     def run(
-        self, sample: str, crop: tuple[int, int, int, int], method: str = "rpn", **parameters: Any
+        self, sample: str, crop: tuple[int, int, int, int], method: str = "rpn", *others: str, **parameters: Any
     ) -> dict[str, Any]:
-        """Run an experiment to its end; its record."""
-        x, y, width, height = crop
-        source = {"sample": sample, "crop": {"x": x, "y": y, "width": width, "height": height}}
+        """Run an experiment to its end; its record. Further samples have the first one's crop."""
+        rectangle = dict(zip(("x", "y", "width", "height"), crop, strict=True))
+        inputs = [{"sample": name, "crop": rectangle} for name in (sample, *others)]
         answer = self.client.post(
             "/api/v1/experiments",
-            json={"method": method, "inputs": [source], "parameters": parameters},
+            json={"method": method, "inputs": inputs, "parameters": parameters},
             headers={"Prefer": "wait=30"},
         )
         assert answer.status_code == 201, answer.text

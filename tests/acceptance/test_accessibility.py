@@ -17,9 +17,14 @@ def pages(site: Any, experiment: dict[str, Any]) -> dict[str, str]:
     """Name → address of every kind of page."""
     other = site.run("sand_desert009", (256, 256, 256, 192), method="adsn", width=384, height=288, seed=7)
     site.run("gravel_gray", (96, 96, 256, 256))
+    mixture = site.run("gravel_gray", (96, 96, 192, 192), "mix", "towel_red", "rockface_pink", seed=2)
+    convergence = site.run("gravel_gray", (96, 96, 128, 128), "dsn", convergence=True, spot="disc")
     return {
         "home": "/",
         "sample": "/samples/scene_china",
+        "several-samples": "/samples/gravel_gray?method=mix&third=towel_red",
+        "mixture": f"/experiments/{mixture['id']}",
+        "convergence": f"/experiments/{convergence['id']}",
         "experiment": f"/experiments/{experiment['id']}",
         "flip": f"/experiments/{experiment['id']}?view=flip",
         "slider": f"/experiments/{experiment['id']}?view=slider",
