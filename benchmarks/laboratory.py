@@ -63,17 +63,21 @@ class Case:
     rounds: int = 7
     everything: bool = False  # every picture, not the texture alone
 
-    def run(self) -> None:
-        """Make the pictures."""
+    def job(self) -> Callable[[], None]:
+        """What makes the pictures of crops that are there already."""
         entry = method(self.name)
         sources = [Source(np.roll(sample(self.crop), 31 * number, 1), 255) for number in range(len(entry.inputs))]
         params = entry.params(**self.parameters)
-        pictures = entry.run(sources, params, Context(8, THREADS, lambda stage, fraction: None))
-        if self.everything:
-            for _ in pictures:
-                pass
-        else:
-            next(pictures)
+
+        def run() -> None:
+            pictures = entry.run(sources, params, Context(8, THREADS, lambda stage, fraction: None))
+            if self.everything:
+                for _ in pictures:
+                    pass
+            else:
+                next(pictures)
+
+        return run
 
 
 def cases() -> dict[str, Case]:
@@ -102,11 +106,11 @@ def main() -> None:
     parser.add_argument("--memory-of", help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.memory_of:
-        print(above_idle(cases()[options.memory_of].run))
+        print(above_idle(cases()[options.memory_of].job()))
         return
     print(f"{THREADS} threads, RGB; ratio to the floor: median, least–greatest; median times; peak memory above idle")
     for title, case in cases().items():
-        ratio = alternate(case.run, case.prepare(), case.rounds)
+        ratio = alternate(case.job(), case.prepare(), case.rounds)
         command = [sys.executable, "-m", "benchmarks.laboratory", "--memory-of", title]
         memory = int(subprocess.run(command, check=True, capture_output=True, text=True).stdout) / MEGABYTE
         print(
