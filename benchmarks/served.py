@@ -63,6 +63,7 @@ def served(directory: Path, **settings: object) -> Iterator[Served]:
     variables = {f"MICROTEXTURE_{name.upper()}": str(value) for name, value in settings.items()}
     environment = {
         **os.environ,
+        "MICROTEXTURE_CATALOGUE": "false",  # what it makes in the background is not what is measured
         "MICROTEXTURE_LOG_LEVEL": "warning",
         **variables,
         "MICROTEXTURE_DATA_DIR": str(directory),
