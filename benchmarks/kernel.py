@@ -80,12 +80,16 @@ def above_idle(work: Callable[[], object]) -> int:
     return _status("VmHWM") - before
 
 
-def all_outputs(side: int) -> None:
-    """Run RPN with every picture."""
-    rpn = method("rpn")
+def all_outputs(side: int) -> Callable[[], None]:
+    """Prepare RPN of this size with every picture."""
+    rpn, source = method("rpn"), Source(sample(512), 255)
     context = Context(8, THREADS, lambda stage, fraction: None)
-    for _ in rpn.run([Source(sample(512), 255)], rpn.params(width=side, height=side), context):
-        pass
+
+    def run() -> None:
+        for _ in rpn.run([source], rpn.params(width=side, height=side), context):
+            pass
+
+    return run
 
 
 def _status(field: str) -> int:
@@ -111,7 +115,7 @@ def main() -> None:
     parser.add_argument("--memory-of", type=int, help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.memory_of:
-        print(above_idle(partial(all_outputs, options.memory_of)))
+        print(above_idle(all_outputs(options.memory_of)))
         return
     rounds = {1024: options.rounds, 2048: max(3, options.rounds * 2 // 3), 4096: max(3, options.rounds // 2)}
     print(f"{THREADS} threads, RGB, float32; ratio: median, least–greatest over the rounds; aim; median times")
