@@ -8,13 +8,9 @@ from app.synthesis.adsn import adsn
 from app.synthesis.periodic import periodic_component
 from app.synthesis.rpn import rpn
 from app.synthesis.spot import extend_spot
+from tests.synthesis.images import image
 
 LIKELY = 1e-3  # a seed is pinned; a p-value below this says that the law is wrong
-
-
-def image(height, width, channels=2, seed=0):
-    rng = np.random.default_rng(seed)
-    return (rng.uniform(0, 100, (height, width, 1)) + rng.uniform(0, 155, (height, width, channels))).astype(np.float32)
 
 
 def spectrum(picture):

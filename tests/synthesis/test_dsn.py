@@ -10,27 +10,11 @@ from app.synthesis.adsn import adsn
 from app.synthesis.dsn import POINTS, counts, dsn, excess_kurtosis, impulses, shape, standard_spot
 from app.synthesis.spectral import random_spectrum
 from app.synthesis.spot_noise import asymptotic, sample_spot
+from tests.synthesis.images import correlations, image, whole
 from tests.synthesis.stopping import stops_at
 
 LIKELY = 1e-3  # a seed is pinned; a p-value below this says that the law is wrong
 MANY = (256, 257)  # more pixels than 16-bit words take values: so their counts come from the table
-
-
-def image(height, width, channels=2, seed=0):
-    rng = np.random.default_rng(seed)
-    return (rng.uniform(0, 100, (height, width, 1)) + rng.uniform(0, 155, (height, width, channels))).astype(np.float32)
-
-
-def whole(spot):
-    """The spot as an image (H, W, C) in double precision."""
-    return spot.rows(0, spot.height).transpose(1, 2, 0).astype(np.float64)
-
-
-def correlations(picture):
-    """(1/MN) Σ_u z_c(u) z_d(u + x) of the centred picture, for all channels c, d and lags x."""
-    z = np.fft.fft2(picture - picture.mean((0, 1)), axes=(0, 1))
-    products = z.conj()[:, :, :, None] * z[:, :, None, :]
-    return np.fft.ifft2(products, axes=(0, 1)).real / (picture.shape[0] * picture.shape[1])
 
 
 @pytest.mark.parametrize("size", [(1, 1), (1, 7), (16, 17), MANY])

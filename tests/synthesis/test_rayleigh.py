@@ -9,15 +9,10 @@ from app.synthesis.periodic import periodic_component
 from app.synthesis.rayleigh import rayleigh
 from app.synthesis.rpn import rpn
 from app.synthesis.spot import centre
+from tests.synthesis.images import image
 
 LIKELY = 1e-3  # a seed is pinned; a p-value below this says that the law is wrong
 SIZES = [(1, 1), (1, 12), (12, 1), (2, 3), (16, 16), (16, 17), (17, 16), (37, 41)]
-
-
-def image(height, width, channels=3, seed=0):
-    """Correlated channels with values of 0–255."""
-    rng = np.random.default_rng(seed)
-    return (rng.uniform(0, 100, (height, width, 1)) + rng.uniform(0, 155, (height, width, channels))).astype(np.float32)
 
 
 def spectrum(picture):

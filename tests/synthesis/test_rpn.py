@@ -11,16 +11,10 @@ from app.synthesis.adsn import adsn
 from app.synthesis.periodic import periodic_component, smooth_component
 from app.synthesis.rpn import rpn
 from app.synthesis.spot import centre, extend_spot
+from tests.synthesis.images import image
 from tests.synthesis.stopping import stops_at
 
 SIZES = [(1, 1), (1, 12), (12, 1), (2, 3), (16, 16), (16, 17), (17, 16), (37, 41), (130, 67)]
-
-
-def image(height, width, channels=3, seed=0):
-    """Correlated channels with values of 0–255."""
-    rng = np.random.default_rng(seed)
-    common = rng.uniform(0, 100, (height, width, 1))
-    return (common + rng.uniform(0, 155, (height, width, channels))).astype(np.float32)
 
 
 def spectrum(picture):

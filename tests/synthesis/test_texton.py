@@ -9,6 +9,7 @@ from app.synthesis.luminance import luminance
 from app.synthesis.periodic import periodic_component
 from app.synthesis.spectral import random_spectrum
 from app.synthesis.texton import extend_texton, radii, texton, texton_noise
+from tests.synthesis.images import correlations, whole
 from tests.synthesis.stopping import stops_at
 
 SIZES = [(1, 1), (1, 12), (12, 1), (2, 3), (16, 16), (16, 17), (37, 41)]
@@ -35,17 +36,6 @@ def at_origin(t):
 def made(h, height, width, cut=None):
     """Extended texton of h and its factor."""
     return extend_texton(texton(h), h.mean((0, 1), dtype=np.float64), height, width, cut)
-
-
-def whole(spot):
-    return spot.rows(0, spot.height).transpose(1, 2, 0).astype(np.float64)
-
-
-def correlations(picture):
-    """(1/MN) Σ_u z_c(u) z_d(u + x) of the centred picture, for all channels c, d and lags x."""
-    z = np.fft.fft2(picture - picture.mean((0, 1)), axes=(0, 1))
-    products = z.conj()[:, :, :, None] * z[:, :, None, :]
-    return np.fft.ifft2(products, axes=(0, 1)).real / (picture.shape[0] * picture.shape[1])
 
 
 @pytest.mark.parametrize("size", SIZES)
