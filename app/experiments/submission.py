@@ -76,12 +76,7 @@ def prepare(
     params = _params(method, request.parameters)
     width, height = method.size(sizes)
     params = params.model_copy(update={"width": params.width or width, "height": params.height or height})
-    pixels = (params.width or 0) * (params.height or 0)
-    if pixels > max_output_pixels:
-        raise TooLargeError(
-            f"A texture of {params.width} × {params.height} has {pixels / 1e6:.0f} megapixels; this service makes at "
-            f"most {max_output_pixels / 1e6:.0f}: ask for a smaller width or height."
-        )
+    _check_pixels(method, params, max_output_pixels)
     method.check(sizes, params)
     return Experiment(
         id=new_identifier(),
@@ -102,6 +97,18 @@ def _check_count(method: Method, given: int) -> None:
     names = ", ".join(slot.name for slot in method.inputs)
     noun = "input" if most == 1 else "inputs"
     raise InvalidInputError(f"The method {method.name} takes {wanted} {noun} ({names}), not {given}.", "inputs")
+
+
+def _check_pixels(method: Method, params: StillParams, allowed: int) -> None:
+    pixels = (params.width or 0) * (params.height or 0)
+    maker = "this service"
+    if method.most_pixels is not None and method.most_pixels < allowed:
+        maker, allowed = f"the method {method.name}", method.most_pixels
+    if pixels > allowed:
+        raise TooLargeError(
+            f"A texture of {params.width} × {params.height} has {pixels / 1e6:.0f} megapixels; {maker} makes at most "
+            f"{allowed / 1e6:.0f}: ask for a smaller width or height."
+        )
 
 
 def _crop(wanted: NewInput, sample: Sample, field: str, transparent: Callable[[Sample, Rectangle], bool]) -> Rectangle:

@@ -11,7 +11,7 @@ from pydantic import Field
 from app.errors import InvalidInputError
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
 from app.methods.model import Context, Fact, Method, Picture, Progress, Size, Source
-from app.methods.options import SpotParams
+from app.methods.options import WHOLE_IN_MEMORY, SpotParams
 from app.methods.pictures import crops, encode, refuse_infinite
 from app.methods.random_phase import INPUTS
 from app.methods.references import IPOL_RPN, PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES, SPOT_NOISE
@@ -231,4 +231,5 @@ DSN = Method(
     explanation=EXPLANATION,
     check=check,
     run=run,
+    most_pixels=WHOLE_IN_MEMORY,
 )

@@ -24,6 +24,8 @@ from app.synthesis.team import Team
 from app.synthesis.work import Work
 
 VIEW = 512  # pixels of a side of the views of iterations, at most
+MEMORY = 1_600_000_000  # bytes, so that the process stays within a worker's default of 2 GiB
+TEXTURE_BYTES, CROP_BYTES, MIRROR_BYTES = 37, 27, 77  # for each value, measured at 4096² in colour
 
 Real = NDArray[np.float32]
 
@@ -78,6 +80,7 @@ def check(sizes: Sequence[Size], params: HeegerBergenParams) -> None:
                 + (f"take at most {fitting} scales, or a larger {what}." if fitting else f"take a larger {what}."),
                 "parameters.scales",
             )
+    _refuse_too_large(size, width * height, params)
     if params.add_smooth and params.edges != "periodic":
         raise InvalidInputError(
             "Only periodic edges take the smooth component out of the crop: take those, or do not add it.",
@@ -85,6 +88,17 @@ def check(sizes: Sequence[Size], params: HeegerBergenParams) -> None:
         )
     if params.add_smooth:
         refuse_other_size(size, width, height)
+
+
+def _refuse_too_large(size: Size, pixels: int, params: HeegerBergenParams) -> None:
+    of_crop = MIRROR_BYTES if params.edges == "mirror" else CROP_BYTES
+    needed = size.channels * (of_crop * size.width * size.height + TEXTURE_BYTES * pixels)
+    if needed > MEMORY:
+        raise InvalidInputError(
+            f"The sub-bands of crop and texture are held in memory, and these would take {needed / 1e9:.1f} of the "
+            f"{MEMORY / 1e9:.1f} GB there are: take a smaller crop, or a smaller width and height.",
+            "parameters.width",
+        )
 
 
 def run(sources: Sequence[Source], params: HeegerBergenParams, context: Context) -> Iterator[Picture]:

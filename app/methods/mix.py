@@ -11,7 +11,7 @@ from app.errors import InvalidInputError
 from app.images.png import PngWriter, encode_png
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
 from app.methods.model import Context, Method, Picture, Size, Slot, Source
-from app.methods.options import SpotParams
+from app.methods.options import WHOLE_IN_MEMORY, SpotParams
 from app.methods.pictures import crops, refuse_infinite
 from app.methods.references import GAUSSIAN_MIXING, PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
 from app.methods.several import alike
@@ -257,6 +257,7 @@ MIX = Method(
     explanation=EXPLANATION,
     check=check,
     run=run,
+    most_pixels=WHOLE_IN_MEMORY,
     more=2,
     phase=True,
 )

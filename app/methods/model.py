@@ -156,6 +156,8 @@ class Method:
         Size of the texture where none is asked for; default: the first input's.
     toroidal : callable ``(params) -> bool``
         Whether the texture tiles without a seam.
+    most_pixels : int, optional
+        Pixels that its texture may have where that is fewer than the service allows: what it holds in memory.
     phase : bool
         Whether it is driven by the random phase that `rpn` and `adsn` share: at one seed and size all such methods
         have the same phase.
@@ -173,4 +175,5 @@ class Method:
     more: int = 0
     size: Callable[[Sequence[Size]], tuple[int, int]] = first_size
     toroidal: Callable[[Any], bool] = lambda params: True
+    most_pixels: int | None = None
     phase: bool = False

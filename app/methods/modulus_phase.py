@@ -8,6 +8,7 @@ from pydantic import Field
 from app.errors import InvalidInputError
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
 from app.methods.model import MAX_SEED, Context, Method, Picture, Size, Slot, Source, StillParams
+from app.methods.options import WHOLE_IN_MEMORY
 from app.methods.pictures import crops, encode, log_modulus, refuse_infinite
 from app.methods.references import OPPENHEIM_LIM, RANDOM_PHASE_TEXTURES
 from app.methods.several import alike
@@ -166,6 +167,7 @@ MODULUS_PHASE = Method(
     explanation=EXPLANATION,
     check=check,
     run=run,
+    most_pixels=WHOLE_IN_MEMORY,
     size=common_size,
     toroidal=lambda params: False,
 )

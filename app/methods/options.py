@@ -9,6 +9,7 @@ from app.errors import InvalidInputError
 from app.methods.model import Size, StillParams
 
 ADVANCED: JsonDict = {"advanced": True}
+WHOLE_IN_MEMORY = 1 << 24  # pixels; what holds several float pictures of the texture's size then stays within 1.5 GB
 
 
 class SpotParams(StillParams):

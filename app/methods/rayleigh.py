@@ -7,6 +7,7 @@ import numpy as np
 from app.errors import InvalidInputError
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
 from app.methods.model import Context, Fact, Method, Picture, Progress, Size, Source, StillParams
+from app.methods.options import WHOLE_IN_MEMORY
 from app.methods.pictures import Real, crops, encode, log_modulus, refuse_infinite
 from app.methods.random_phase import INPUTS
 from app.methods.references import PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
@@ -142,4 +143,5 @@ RAYLEIGH = Method(
     explanation=EXPLANATION,
     check=check,
     run=run,
+    most_pixels=WHOLE_IN_MEMORY,
 )

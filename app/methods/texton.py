@@ -8,6 +8,7 @@ from pydantic import Field
 
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
 from app.methods.model import Context, Fact, Method, Picture, Size, Source, StillParams
+from app.methods.options import WHOLE_IN_MEMORY
 from app.methods.pictures import crops, encode, refuse_infinite
 from app.methods.random_phase import INPUTS
 from app.methods.references import PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
@@ -208,5 +209,6 @@ TEXTON = Method(
     explanation=EXPLANATION,
     check=check,
     run=run,
+    most_pixels=WHOLE_IN_MEMORY,
     phase=True,
 )

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from app.errors import InvalidInputError
+from app.errors import InvalidInputError, TooLargeError
 from app.experiments.model import Experiment, Sample
 from app.experiments.submission import NewExperiment, NewInput, prepare
 from app.images.crop import Rectangle
@@ -54,3 +54,24 @@ def test_a_method_may_choose_another_size_than_the_first_crops() -> None:
     """Swapping modulus and phase needs images of one size: what both have."""
     experiment = prepared("modulus-phase", "sand", "wall")
     assert (experiment.parameters["width"], experiment.parameters["height"]) == (120, 200)
+
+
+@pytest.mark.parametrize(("method", "fits"), [("rpn", True), ("mix", False), ("dsn", False), ("texton", False)])
+def test_a_texture_that_a_method_could_not_hold_in_memory_is_refused(method: str, fits: bool) -> None:
+    """The service allows 67 megapixels, which RPN makes by blocks; others hold pictures of that size."""
+
+    def large() -> Experiment:
+        inputs = (NewInput("sand"),) * (2 if method == "mix" else 1)
+        return prepare(
+            NewExperiment(method, inputs, {"width": 8192, "height": 8192}),
+            "owner",
+            sample=SAMPLES.__getitem__,
+            transparent=lambda sample, crop: False,
+            max_output_pixels=1 << 26,
+        )
+
+    if fits:
+        assert large().parameters["width"] == 8192
+    else:
+        with pytest.raises(TooLargeError, match=f"the method {method} makes at most 17"):
+            large()

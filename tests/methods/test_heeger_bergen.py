@@ -125,3 +125,22 @@ def test_the_facts_tell_the_shares_of_the_components_and_the_distance_that_is_le
     (distance,) = made["texture-bands"].facts
     assert 0 < distance.value < 15
     assert len(pictures(crop(channels=1))["crop-bands"].facts) == 1
+
+
+@pytest.mark.parametrize(
+    ("size", "parameters", "fits"),
+    [
+        ((512, 512, 3), {"width": 3584, "height": 3584}, True),
+        ((512, 512, 3), {"width": 4096, "height": 4096}, False),
+        ((512, 512, 1), {"width": 4096, "height": 4096}, True),
+        ((3500, 3500, 3), {"width": 512, "height": 512}, True),
+        ((3500, 3500, 3), {"width": 512, "height": 512, "edges": "mirror"}, False),
+    ],
+)
+def test_what_would_not_fit_into_a_workers_memory_is_refused_beforehand(size, parameters, fits):
+    """A worker that is killed for its memory tells nobody why."""
+    if fits:
+        HEEGER_BERGEN.check([Size(*size)], HeegerBergenParams(**parameters))
+    else:
+        with pytest.raises(InvalidInputError, match="smaller crop"):
+            HEEGER_BERGEN.check([Size(*size)], HeegerBergenParams(**parameters))
