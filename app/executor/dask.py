@@ -277,7 +277,7 @@ class DaskExecutor:
             run = self._runs[job] = Dispatched(job, address, time.monotonic())
             moved = list(self._queue)
         try:
-            run.future = engine.submit(job, self._deaths[job], address)
+            run.future = engine.submit(job, address)
         except Exception:
             with self._state:
                 del self._runs[job]

@@ -21,6 +21,7 @@ log = logging.getLogger(__name__)
 
 CONNECT_SECONDS = 10.0
 CLOSE_SECONDS = 5.0
+REMEMBERED = 1000  # jobs whose runs are counted: a scheduler forgets a run within milliseconds of its end
 LOOPBACK = "127.0.0.1"
 
 EMBEDDED = {
@@ -55,6 +56,7 @@ class Engine:
         self._run = run
         self._settings = settings.model_copy(update={"operator_token": None})  # of no use to a worker
         self._topic = f"microtexture-{uuid4().hex}"
+        self._sent: dict[str, int] = {}
         self._cluster: Any = None if settings.scheduler else _local_cluster(settings, run)
         try:
             address = settings.scheduler or self._cluster
@@ -78,18 +80,23 @@ class Engine:
         found = self._client.scheduler_info()["workers"]
         return {address: worker["nthreads"] for address, worker in found.items()}
 
-    def submit(self, job: str, deaths: int, address: str) -> "Future[None]":
+    def submit(self, job: str, address: str) -> "Future[None]":
         """Start a job on this worker, or on another one if this one is gone.
 
-        The job is the task's key: given twice to one scheduler, it runs once. A death of its worker makes another key.
+        The job and how often it was sent before are the task's key: given to one scheduler by two services, it runs
+        once; given again by one of them, after its end or its worker's, it runs again, though the scheduler may not
+        have forgotten the run before.
         """
+        count = self._sent[job] = self._sent.pop(job, -1) + 1
+        if len(self._sent) > REMEMBERED:
+            del self._sent[next(iter(self._sent))]
         future: Future[None] = self._client.submit(
             tasks.work,
             self._run,
             self._settings,
             job,
             self._topic,
-            key=("experiment", job, deaths),
+            key=("experiment", job, count),
             pure=False,
             workers=[address],
             allow_other_workers=True,
