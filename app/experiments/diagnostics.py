@@ -5,10 +5,11 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from app.experiments.meter import measured
 from app.images.crop import Rectangle
 from app.images.read import read_crop
 from app.methods.model import Picture, Progress, Source
-from app.synthesis.structure import CENTRE, delta_of
+from app.synthesis.structure import delta_of
 
 DIGITS = 6  # of a number in the record
 
@@ -40,12 +41,8 @@ def diagnose(sources: Sequence[Source], staged: Sequence[tuple[Picture, Path]], 
         inputs.append(round(delta_of(source.pixels), DIGITS))
     for picture, path in textures:
         progress("structure", 0.92 + 0.06 * (len(inputs) + len(outputs)) / total)
-        outputs.append(round(delta_of(read_crop(path, _centre(picture))), DIGITS))
+        outputs.append(
+            round(delta_of(read_crop(path, measured(Rectangle(0, 0, picture.width, picture.height)))), DIGITS)
+        )
     facts = [{"output": picture.name, **asdict(fact)} for picture, _ in staged for fact in picture.facts]
     return {"structure": {"inputs": inputs, "outputs": outputs}, "facts": facts}
-
-
-def _centre(picture: Picture) -> Rectangle:
-    """What the index looks at of a large picture; the rest need not be read."""
-    width, height = min(picture.width, CENTRE), min(picture.height, CENTRE)
-    return Rectangle((picture.width - width) // 2, (picture.height - height) // 2, width, height)

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from urllib.parse import urlencode
 
 from app.errors import AppError, InvalidInputError
 from app.experiments.model import Experiment, Sample
@@ -83,6 +84,11 @@ def typed(values: Mapping[str, str]) -> dict[str, str]:
         if value != entry.default:
             query[entry.name] = value
     return query
+
+
+def form_url(experiment: Experiment) -> str:
+    """The form of the first sample, filled in as the experiment says."""
+    return f"/samples/{experiment.inputs[0].sample}?{urlencode(address(experiment), safe=',:')}"
 
 
 @dataclass(frozen=True)

@@ -3,14 +3,13 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
-from urllib.parse import urlencode
 
 from app.errors import AppError
 from app.experiments.model import Experiment, Status
 from app.experiments.service import Service
 from app.images.crop import Rectangle
 from app.methods.explanation import Exhibit, Figure
-from app.web.drafts import address
+from app.web.drafts import form_url
 from app.web.templating import label
 
 SAMPLE = "Sample"
@@ -33,17 +32,12 @@ class Shown:
     state: str = ""
 
 
-def change_url(experiment: Experiment) -> str:
-    """The form of its sample, filled in as the experiment says."""
-    return f"/samples/{experiment.inputs[0].sample}?{urlencode(address(experiment), safe=',')}"
-
-
 def shown(service: Service, exhibit: Exhibit) -> list[Shown]:
     """The pictures of one exhibit, in its order."""
     made = service.catalogue.find(exhibit)
     if made is None or made.status is not Status.SUCCEEDED:
         return _standing_in(service, exhibit, made)
-    change = change_url(made)
+    change = form_url(made)
     deltas = _deltas(made)
     found = [output for name in exhibit.show if (output := made.output(name)) is not None]
     return [
@@ -113,7 +107,7 @@ def _standing_in(service: Service, exhibit: Exhibit, made: Experiment | None) ->
         "",
         page,
         *size,
-        change=change_url(experiment),
+        change=form_url(experiment),
         state=_state(made, service.catalogue.making),
     )
     return [*(_crops(service, experiment) if "crop" in exhibit.show else ()), texture]

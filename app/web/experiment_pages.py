@@ -4,7 +4,6 @@ import secrets
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
-from urllib.parse import urlencode
 
 from fastapi import APIRouter, Form, Query, Request
 from fastapi.responses import RedirectResponse
@@ -20,7 +19,7 @@ from app.methods.fields import fields
 from app.methods.model import Method
 from app.methods.registry import METHODS, method
 from app.web.deps import ServiceDep, TokenDep, base_url, remember_owner
-from app.web.drafts import address
+from app.web.drafts import form_url
 from app.web.forms import SHARED
 from app.web.inputs import most
 from app.web.panes import crop_panes, facts, gallery, input_titles, steps, texture_pane, tiling
@@ -86,7 +85,7 @@ def _common(service: Service, experiment: Experiment, token: str | None) -> dict
         "owned": service.owns(experiment, token),
         "hidden": not experiment.listed and not is_exhibit(experiment),
         "rows": list(_rows(experiment)),
-        "edit_url": f"/samples/{experiment.inputs[0].sample}?{urlencode(address(experiment), safe=',:')}",
+        "edit_url": form_url(experiment),
     }
 
 

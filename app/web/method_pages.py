@@ -15,7 +15,8 @@ from app.methods.fields import FormField, fields
 from app.methods.model import Method
 from app.methods.registry import METHODS, method
 from app.web.deps import ServiceDep, base_url
-from app.web.exhibits import Shown, change_url, figure_view, shown
+from app.web.drafts import form_url
+from app.web.exhibits import Shown, figure_view, shown
 from app.web.snippets import snippets
 from app.web.templating import render
 
@@ -57,7 +58,7 @@ def method_page(request: Request, name: str, service: ServiceDep) -> Response:
         "method": declared,
         "rows": [(entry, _span(entry)) for entry in fields(declared.params)],
         "figures": [figure_view(service, figure) for figure in declared.explanation.figures],
-        "run_url": change_url(example) if example else "/",
+        "run_url": form_url(example) if example else "/",
         "snippets": snippets(example, base_url(request))[:2] if example else (),
         "before": METHODS[names[place - 1]] if place else None,
         "after": METHODS[names[place + 1]] if place + 1 < len(names) else None,
