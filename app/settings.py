@@ -37,6 +37,11 @@ class Settings(BaseSettings):
     max_upload_bytes: int = Field(32 * MEBIBYTE, ge=1, description="Bytes of an uploaded file.")
     max_upload_pixels: int = Field(50_000_000, ge=1, description="Pixels (width × height) of an uploaded picture.")
     max_output_pixels: int = Field(1 << 26, ge=1, description="Pixels (width × height) of a synthesised texture.")
+    max_film_frames: int = Field(600, ge=2, description="Frames of an uploaded video.")
+    max_film_seconds: float = Field(60.0, gt=0, description="Seconds that an uploaded video plays.")
+    max_film_pixels: int = Field(
+        1 << 28, ge=1, description="Pixels (width × height × frames) of a video, uploaded or synthesised."
+    )
     decode_seconds: float = Field(20.0, gt=0, description="Seconds that decoding one upload may take.")
     decode_memory: int = Field(2048 * MEBIBYTE, ge=64 * MEBIBYTE, description="Bytes that decoding one upload may use.")
 

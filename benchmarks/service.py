@@ -45,7 +45,7 @@ def directly(photo: Path, seed: int, threads: int) -> int:
     rpn = method("rpn")
     source = Source(read_crop(photo, CROP), 255)
     context = Context(8, threads, lambda stage, fraction: None)
-    return sum(len(picture.png) for picture in rpn.run([source], rpn.params(seed=seed), context))
+    return sum(len(picture.data) for picture in rpn.run([source], rpn.params(seed=seed), context))
 
 
 def kernel(photo: Path, seed: int, threads: int) -> None:

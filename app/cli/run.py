@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from app.errors import InvalidInputError, NotFoundError
 from app.experiments.model import Experiment, Sample
-from app.experiments.submission import NewExperiment, NewInput, prepare
+from app.experiments.submission import Allowed, NewExperiment, NewInput, prepare
 from app.images.convert import Format, convert
 from app.images.crop import Rectangle
 from app.images.decode import Decoded, Limits, decode
@@ -70,8 +70,7 @@ def run(request: Request, settings: Settings, progress: Progress) -> str:
     params = method.params.model_validate(experiment.parameters)
     # The first picture is the texture; the steps that the pages show after it are not computed.
     texture = next(method.run(sources, params, Context(depth, settings.threads, progress)))
-    data = texture.png if chosen == "png" else convert(texture.png, chosen)[0]
-    _write(request.out, data)
+    _write(request.out, convert(texture.data, chosen)[0])
     seconds = time.perf_counter() - started
     size = f"{texture.width} × {texture.height} pixels"
     return f"{request.out}: {size}, {method.name}, seed {params.seed}, {seconds:.2f} s"
@@ -121,8 +120,8 @@ def _experiment(request: Request, photos: Mapping[str, Decoded], settings: Setti
         NewExperiment(request.method, inputs, parameters),
         "",
         sample=lambda name: _as_sample(name, photos[name]),
-        transparent=lambda sample, crop: _holds_transparency(photos[sample.id], crop),
-        max_output_pixels=settings.max_output_pixels,
+        transparent=lambda sample, crop, frames: _holds_transparency(photos[sample.id], crop),
+        allowed=Allowed.by(settings),
     )
 
 

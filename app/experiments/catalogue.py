@@ -10,7 +10,7 @@ from app.errors import AppError, DeletedError, NotFoundError
 from app.experiments.intake import SampleIntake
 from app.experiments.model import Experiment, Status
 from app.experiments.ports import Executor, ExperimentStore
-from app.experiments.submission import NewExperiment, NewInput, prepare
+from app.experiments.submission import Allowed, NewExperiment, NewInput, prepare
 from app.gallery.exhibits import exhibits
 from app.gallery.identity import identifier
 from app.images.crop import Rectangle
@@ -140,7 +140,7 @@ class Catalogue:
             OWNER,
             sample=self._store.sample,
             transparent=self._intake.transparent,
-            max_output_pixels=self._settings.max_output_pixels,
+            allowed=Allowed.by(self._settings),
         )
         return replace(experiment, id=identifier(exhibit))
 

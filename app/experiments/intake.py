@@ -9,10 +9,10 @@ from app.errors import AppError
 from app.experiments.model import Sample
 from app.experiments.ownership import new_identifier
 from app.experiments.ports import BlobStore, ExperimentStore
-from app.images.crop import Rectangle
+from app.images.crop import Frames, Rectangle
 from app.images.decode import Limits
 from app.images.intake import intake, server
-from app.images.read import has_transparency
+from app.images.strip import frames_have_transparency
 from app.samples import bundled
 from app.settings import Settings
 
@@ -27,7 +27,13 @@ class SampleIntake:
         self._blobs = blobs
         self._directory = settings.samples_dir
         self._limits = Limits(
-            settings.max_upload_bytes, settings.max_upload_pixels, settings.decode_seconds, settings.decode_memory
+            bytes=settings.max_upload_bytes,
+            pixels=settings.max_upload_pixels,
+            seconds=settings.decode_seconds,
+            memory=settings.decode_memory,
+            film_frames=settings.max_film_frames,
+            film_seconds=settings.max_film_seconds,
+            film_pixels=settings.max_film_pixels,
         )
 
     def add(self, upload: Path, owner: str | None) -> Sample:
@@ -63,9 +69,9 @@ class SampleIntake:
         """End the process that decodes."""
         server.stop()
 
-    def transparent(self, sample: Sample, crop: Rectangle) -> bool:
+    def transparent(self, sample: Sample, crop: Rectangle, frames: Frames) -> bool:
         """Whether the crop holds pixels that are not opaque."""
-        return has_transparency(self._blobs.path(sample.digest), crop)
+        return frames_have_transparency(self._blobs.path(sample.digest), crop, frames, sample.height)
 
     def _add(self, path: Path, sample_id: str, owner: str | None, *, title: str | None) -> Sample:
         found = intake(path, self._blobs.temporary_directory, self._limits)
@@ -79,8 +85,11 @@ class SampleIntake:
                 depth=found.depth,
                 transparent=found.transparent,
                 created_at=datetime.now(UTC),
+                frames=found.frames,
+                media_type=found.media_type,
                 title=title,
                 bundled=title is not None,
+                rate=found.rate,
             )
             self._store.add_sample(sample, owner)
         return sample

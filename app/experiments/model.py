@@ -6,7 +6,7 @@ from datetime import datetime
 from enum import StrEnum
 from typing import Any, Literal
 
-from app.images.crop import Rectangle
+from app.images.crop import Frames, Rectangle
 
 
 class Status(StrEnum):
@@ -26,11 +26,14 @@ class Status(StrEnum):
 
 @dataclass(frozen=True)
 class Sample:
-    """An uploaded or bundled picture, stored once, upright, in sRGB, without metadata.
+    """An uploaded or bundled picture or video, stored once, upright, in sRGB, without metadata.
 
     ``digest`` is the SHA-256 (hex) of its stored PNG file, the name under which the blob store keeps it. ``depth`` is
     8 or 16 bits per channel; ``channels`` counts colour channels (1 or 3); ``transparent`` says that the stored PNG has
     an alpha channel with pixels that are not opaque. ``title`` is set for bundled samples, whose ids are file stems.
+
+    A video has more than one of ``frames``, ``rate`` of them a second, and ``media_type`` is what it was uploaded as;
+    its file is a film strip (`app.images.strip`): the frames one below the other, each of ``width`` × ``height``.
     """
 
     id: str
@@ -45,21 +48,32 @@ class Sample:
     media_type: str = "image/png"
     title: str | None = None
     bundled: bool = False
+    rate: float = 0.0
+
+    @property
+    def moving(self) -> bool:
+        """Whether it is a video."""
+        return self.frames > 1
 
 
 @dataclass(frozen=True)
 class ExperimentInput:
-    """A crop of a sample. The rectangle is always explicit: the whole sample when none was asked for."""
+    """A crop of a sample, of one of its frames or of several.
+
+    Both are always explicit: where none was asked for, all of the picture, and of a video all frames where the method
+    takes a video, else the first.
+    """
 
     sample: str
     crop: Rectangle
+    frames: Frames = field(default_factory=Frames)
 
 
 @dataclass(frozen=True)
 class Output:
     """A named file of an experiment. Names that start with ``.`` are the service's own and are not listed.
 
-    ``kind`` is as in `app.methods.model.Picture`: a ``texture`` that was synthesised, or a ``view``.
+    ``kind``, ``frames`` and ``rate`` are as in `app.methods.model.Picture`.
     """
 
     name: str
@@ -70,10 +84,17 @@ class Output:
     bytes: int
     digest: str
     kind: Literal["texture", "view"] = "view"
+    frames: int = 1
+    rate: float = 0.0
 
     @property
     def listed(self) -> bool:
         return not self.name.startswith(".")
+
+    @property
+    def film(self) -> bool:
+        """Whether it is a video, not a picture (though that may be animated)."""
+        return self.media_type.startswith("video/")
 
 
 @dataclass(frozen=True)

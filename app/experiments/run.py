@@ -9,12 +9,15 @@ from itertools import islice
 from pathlib import Path
 from typing import Literal
 
+import numpy as np
+
 from app.errors import AppError, CancelledError, DeletedError, NotFoundError
 from app.experiments.diagnostics import diagnose
 from app.experiments.model import Experiment, Output, Status
 from app.experiments.ports import BlobStore, ExperimentStore
 from app.images.read import read_crop
-from app.methods.model import Context, Picture, Progress, Source
+from app.images.strip import place, read_frames
+from app.methods.model import Context, Film, Picture, Progress, Source
 from app.methods.registry import method as method_named
 
 log = logging.getLogger(__name__)
@@ -23,6 +26,7 @@ MAX_ATTEMPTS = 6  # more often than any row of restarts would start one: it is t
 METHOD_SHARE = 0.92  # of the bar; the rest is for what is done around the method
 DEEP = "@16"  # ends the name of a job that computes the texture of a finished experiment at 16 bits
 DEEP_TEXTURE = ".texture-16"
+TEXTURES = 2  # files that are a video method's texture: WebM and MP4, its first pictures
 
 
 def run_job(store: ExperimentStore, blobs: BlobStore, job: str, progress: Progress, *, threads: int) -> None:
@@ -76,9 +80,9 @@ def _compute(
 ) -> None:
     stages = Stages(progress)
     sources = _read(store, blobs, experiment, stages)
-    pictures = _pictures(experiment, sources, 8, threads, stages)
+    pictures = _pictures(experiment, sources, 8, threads, stages, blobs.temporary_directory)
     if experiment.transient:
-        pictures = islice(pictures, 1)
+        pictures = islice(pictures, TEXTURES if method_named(experiment.method).moving else 1)
     with _staged(blobs, pictures) as staged:
         diagnostics = {} if experiment.transient else diagnose(sources, staged, stages)
         stages("writing", 1.0)
@@ -98,7 +102,7 @@ def _add_deep_texture(
         return
     stages = Stages(progress)
     sources = _read(store, blobs, experiment, stages)
-    pictures = islice(_pictures(experiment, sources, 16, threads, stages), 1)
+    pictures = islice(_pictures(experiment, sources, 16, threads, stages, blobs.temporary_directory), 1)
     with _staged(blobs, pictures) as staged, blobs.lease():
         for picture, path in staged:
             store.add_output(experiment_id, replace(_kept(blobs, picture, path), name=DEEP_TEXTURE))
@@ -107,15 +111,26 @@ def _add_deep_texture(
 def _read(store: ExperimentStore, blobs: BlobStore, experiment: Experiment, progress: Progress) -> list[Source]:
     progress("reading the crop", 0.0)
     sources = []
-    for item in experiment.inputs:
+    slots = method_named(experiment.method).inputs
+    for index, item in enumerate(experiment.inputs):
         sample = store.sample(item.sample)
-        pixels = read_crop(blobs.path(sample.digest), item.crop)
-        sources.append(Source(pixels, 65535 if sample.depth == 16 else 255))
+        path, peak = blobs.path(sample.digest), 65535 if sample.depth == 16 else 255
+        if slots[min(index, len(slots) - 1)].moving:
+            film = Film(read_frames(path, item.crop, item.frames, sample.height), sample.rate)
+            sources.append(Source(film.frames[0].astype(np.float32), peak, film))
+        else:
+            pixels = read_crop(path, place(item.crop, item.frames.first, sample.height))
+            sources.append(Source(pixels, peak))
     return sources
 
 
 def _pictures(
-    experiment: Experiment, sources: list[Source], depth: Literal[8, 16], threads: int, progress: Progress
+    experiment: Experiment,
+    sources: list[Source],
+    depth: Literal[8, 16],
+    threads: int,
+    progress: Progress,
+    scratch: Path,
 ) -> Iterator[Picture]:
     method = method_named(experiment.method)
     params = method.params.model_validate(experiment.parameters)
@@ -123,7 +138,7 @@ def _pictures(
     def scaled(stage: str, fraction: float) -> None:
         progress(stage, METHOD_SHARE * fraction)
 
-    return method.run(sources, params, Context(depth, threads, scaled))
+    return method.run(sources, params, Context(depth, threads, scaled, scratch))
 
 
 @contextmanager
@@ -132,7 +147,8 @@ def _staged(blobs: BlobStore, pictures: Iterable[Picture]) -> Iterator[list[tupl
     staged: list[tuple[Picture, Path]] = []
     try:
         for picture in pictures:
-            staged.append((replace(picture, png=b""), blobs.temporary(picture.png)))
+            data = picture.data
+            staged.append((replace(picture, data=b""), data if isinstance(data, Path) else blobs.temporary(data)))
         yield staged
     finally:
         for _, path in staged:
@@ -142,7 +158,18 @@ def _staged(blobs: BlobStore, pictures: Iterable[Picture]) -> Iterator[list[tupl
 def _kept(blobs: BlobStore, picture: Picture, path: Path) -> Output:
     size = path.stat().st_size
     digest = blobs.put_file(path)
-    return Output(picture.name, picture.title, "image/png", picture.width, picture.height, size, digest, picture.kind)
+    return Output(
+        name=picture.name,
+        title=picture.title,
+        media_type=picture.media_type,
+        width=picture.width,
+        height=picture.height,
+        bytes=size,
+        digest=digest,
+        kind=picture.kind,
+        frames=picture.frames,
+        rate=picture.rate,
+    )
 
 
 class Stages:

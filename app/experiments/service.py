@@ -22,7 +22,7 @@ from app.experiments.ownership import new_token, same, token_digest
 from app.experiments.pictures import Pictures
 from app.experiments.ports import BlobStore, Executor, ExperimentStore
 from app.experiments.run import DEEP
-from app.experiments.submission import NewExperiment, prepare
+from app.experiments.submission import Allowed, NewExperiment, prepare
 from app.images.convert import Format
 from app.images.crop import Rectangle
 from app.settings import Settings
@@ -264,7 +264,7 @@ class Service:
             token_digest(owner_token),
             sample=self._store.sample,
             transparent=self._intake.transparent,
-            max_output_pixels=self._settings.max_output_pixels,
+            allowed=Allowed.by(self._settings),
         )
         experiment = replace(experiment, transient=transient)
         self._store.add(experiment)

@@ -11,17 +11,37 @@ from pydantic_core import ErrorDetails
 from app.errors import InvalidInputError, TooLargeError
 from app.experiments.model import Experiment, ExperimentInput, Sample
 from app.experiments.ownership import new_identifier
-from app.images.crop import Rectangle
-from app.methods.model import Method, Size, StillParams
+from app.images.crop import Frames, Rectangle
+from app.methods.model import Method, MovingParams, Size, Slot, StillParams
 from app.methods.registry import method as method_named
+from app.settings import MEBIBYTE, Settings
+
+LEAST_FRAMES = 2
+WORKING_SHARE = 0.75  # of a worker's memory; the rest is the interpreter's, the libraries' and the encoders'
 
 
 @dataclass(frozen=True)
 class NewInput:
-    """A crop of a sample; without a crop, all of it."""
+    """A crop of a sample; without a crop, all of it. For ``frames`` see `ExperimentInput`."""
 
     sample: str
     crop: Rectangle | None = None
+    frames: Frames | None = None
+
+
+@dataclass(frozen=True)
+class Allowed:
+    """What a texture may have and take: pixels (of a video, of one frame and of all) and a worker's bytes of memory."""
+
+    pixels: int
+    film_pixels: int
+    memory: int
+
+    @classmethod
+    def by(cls, settings: Settings) -> "Allowed":
+        """What the settings allow."""
+        memory = int(settings.worker_memory * WORKING_SHARE)
+        return cls(settings.max_output_pixels, settings.max_film_pixels, memory)
 
 
 @dataclass(frozen=True)
@@ -39,8 +59,8 @@ def prepare(
     owner: str,
     *,
     sample: Callable[[str], Sample],
-    transparent: Callable[[Sample, Rectangle], bool],
-    max_output_pixels: int,
+    transparent: Callable[[Sample, Rectangle, Frames], bool],
+    allowed: Allowed,
 ) -> Experiment:
     """A complete experiment: crops explicit, defaults and sizes filled in.
 
@@ -52,9 +72,8 @@ def prepare(
     sample : callable
         Gives the sample of an id; raises `NotFoundError`.
     transparent : callable
-        Whether a crop of a sample holds pixels that are not opaque.
-    max_output_pixels : int
-        Width × height that a texture may have.
+        Whether a crop of some frames of a sample holds pixels that are not opaque.
+    allowed : Allowed
 
     Raises
     ------
@@ -63,21 +82,27 @@ def prepare(
     NotFoundError
         If the method or a sample does not exist.
     TooLargeError
-        If the texture would have too many pixels.
+        If the texture would have too many pixels, or take more memory than there is.
     """
     method = method_named(request.method)
     _check_count(method, len(request.inputs))
     inputs, sizes = [], []
     for index, wanted_input in enumerate(request.inputs):
         found = sample(wanted_input.sample)
-        crop = _crop(wanted_input, found, f"inputs.{index}.crop", transparent)
-        inputs.append(ExperimentInput(found.id, crop))
-        sizes.append(Size(crop.width, crop.height, found.channels))
+        slot = method.inputs[min(index, len(method.inputs) - 1)]
+        frames = _frames(wanted_input, found, slot, f"inputs.{index}")
+        crop = _crop(wanted_input, found, frames, f"inputs.{index}.crop", transparent)
+        inputs.append(ExperimentInput(found.id, crop, frames))
+        sizes.append(Size(crop.width, crop.height, found.channels, frames.count))
     params = _params(method, request.parameters)
     width, height = method.size(sizes)
-    params = params.model_copy(update={"width": params.width or width, "height": params.height or height})
-    _check_pixels(method, params, max_output_pixels)
+    filled = {"width": params.width or width, "height": params.height or height}
+    if isinstance(params, MovingParams):
+        filled["frames"] = params.frames or max(size.frames for size in sizes)
+    params = params.model_copy(update=filled)
+    _check_pixels(method, params, allowed)
     method.check(sizes, params)
+    _check_memory(method, sizes, params, allowed)
     return Experiment(
         id=new_identifier(),
         method=method.name,
@@ -99,9 +124,15 @@ def _check_count(method: Method, given: int) -> None:
     raise InvalidInputError(f"The method {method.name} takes {wanted} {noun} ({names}), not {given}.", "inputs")
 
 
-def _check_pixels(method: Method, params: StillParams, allowed: int) -> None:
+def _check_pixels(method: Method, params: StillParams, limits: Allowed) -> None:
     pixels = (params.width or 0) * (params.height or 0)
-    maker = "this service"
+    maker, allowed = "this service", limits.pixels
+    if isinstance(params, MovingParams) and pixels * (params.frames or 1) > limits.film_pixels:
+        raise TooLargeError(
+            f"A video of {params.frames} frames of {params.width} × {params.height} has "
+            f"{pixels * (params.frames or 1) / 1e6:.0f} megapixels; {maker} makes at most "
+            f"{limits.film_pixels / 1e6:.0f}: ask for fewer frames, or for a smaller width or height."
+        )
     if method.most_pixels is not None and method.most_pixels < allowed:
         maker, allowed = f"the method {method.name}", method.most_pixels
     if pixels > allowed:
@@ -111,13 +142,58 @@ def _check_pixels(method: Method, params: StillParams, allowed: int) -> None:
         )
 
 
-def _crop(wanted: NewInput, sample: Sample, field: str, transparent: Callable[[Sample, Rectangle], bool]) -> Rectangle:
+def _check_memory(method: Method, sizes: list[Size], params: StillParams, allowed: Allowed) -> None:
+    needed = 0 if method.memory is None else method.memory(sizes, params)
+    if needed > allowed.memory:
+        smaller = (
+            "a shorter or smaller crop, fewer frames, or a smaller width and height"
+            if method.moving
+            else ("a smaller crop, or a smaller width and height")
+        )
+        raise TooLargeError(
+            f"This run would need about {needed / MEBIBYTE:,.0f} MB of memory, and a worker of this service has "
+            f"{allowed.memory / MEBIBYTE:,.0f} MB for it: take {smaller}."
+        )
+
+
+def _frames(wanted: NewInput, sample: Sample, slot: Slot, field: str) -> Frames:
+    if slot.moving and not sample.moving:
+        raise InvalidInputError(
+            f"The input “{slot.name}” of this method is a video, and this sample is a still picture: upload an MP4, "
+            "WebM, GIF, animated WebP or APNG file, or take one of the bundled clips.",
+            f"{field}.sample",
+        )
+    frames = wanted.frames or (Frames(0, sample.frames) if slot.moving else Frames())
+    try:
+        frames.within(sample.frames)
+    except InvalidInputError as error:
+        raise InvalidInputError(error.message, f"{field}.frames") from None
+    if slot.moving and frames.count < LEAST_FRAMES:
+        raise InvalidInputError(
+            f"A moving texture is made from at least {LEAST_FRAMES} frames: make the time range longer.",
+            f"{field}.frames",
+        )
+    if not slot.moving and frames.count > 1:
+        raise InvalidInputError(
+            f"The input “{slot.name}” of this method is a still picture: give a time range of 1 frame.",
+            f"{field}.frames",
+        )
+    return frames
+
+
+def _crop(
+    wanted: NewInput,
+    sample: Sample,
+    frames: Frames,
+    field: str,
+    transparent: Callable[[Sample, Rectangle, Frames], bool],
+) -> Rectangle:
     crop = wanted.crop or Rectangle(0, 0, sample.width, sample.height)
     try:
         crop.within(sample.width, sample.height)
     except InvalidInputError as error:
         raise InvalidInputError(error.message, field) from None
-    if sample.transparent and transparent(sample, crop):
+    if sample.transparent and transparent(sample, crop, frames):
         raise InvalidInputError(
             "The crop holds transparent pixels, which have no colour to synthesise from: move it to an opaque region.",
             field,

@@ -1,4 +1,4 @@
-"""A rectangle of a picture, in pixels of the upright original."""
+"""Parts of a sample: a rectangle in pixels of the upright original, and a range of a video's frames."""
 
 from dataclasses import dataclass
 
@@ -58,3 +58,54 @@ class Rectangle:
 
     def __str__(self) -> str:
         return f"{self.x},{self.y},{self.width},{self.height}"
+
+
+@dataclass(frozen=True)
+class Frames:
+    """A range of a video's frames: ``first`` counts from 0; a still picture has one."""
+
+    first: int = 0
+    count: int = 1
+
+    @classmethod
+    def parse(cls, text: str) -> "Frames":
+        """Read ``first,count``.
+
+        Raises
+        ------
+        InvalidInputError
+            If the text is not two whole numbers separated by a comma.
+
+        Examples
+        --------
+        >>> Frames.parse("12,48")
+        Frames(first=12, count=48)
+        """
+        try:
+            first, count = (int(part) for part in text.split(","))
+        except ValueError:
+            raise InvalidInputError(
+                f"A time range is two whole numbers first,count, for example 0,48; got {text!r}.", "frames"
+            ) from None
+        return cls(first, count)
+
+    def within(self, frames: int) -> "Frames":
+        """Itself, if it lies in a sample of so many frames.
+
+        Raises
+        ------
+        InvalidInputError
+            If it is empty or reaches outside.
+        """
+        if self.count < 1:
+            raise InvalidInputError("A time range has at least 1 frame: give the number of frames.", "frames")
+        if self.first < 0 or self.first + self.count > frames:
+            raise InvalidInputError(
+                f"The time range {self} reaches outside the sample, which has {frames} "
+                f"frame{'s' if frames > 1 else ''} (the first is number 0): move it or make it shorter.",
+                "frames",
+            )
+        return self
+
+    def __str__(self) -> str:
+        return f"{self.first},{self.count}"

@@ -27,12 +27,18 @@ OTHERS = {
 
 @dataclass(frozen=True)
 class Limits:
-    """What one upload may cost: bytes of the file, pixels, and seconds and bytes of memory to decode it."""
+    """What one upload may cost: bytes of the file, pixels of a picture, seconds and bytes of memory to decode it.
+
+    Of a video also frames, seconds that it plays, and pixels of all frames together.
+    """
 
     bytes: int = 32 * MEBIBYTE
     pixels: int = 50_000_000
     seconds: float = 20.0
     memory: int = 2048 * MEBIBYTE
+    film_frames: int = 600
+    film_seconds: float = 60.0
+    film_pixels: int = 1 << 28
 
 
 @dataclass(frozen=True)

@@ -30,7 +30,8 @@ class Intake:
     """A stored picture: upright, in sRGB, without metadata.
 
     ``path`` is a PNG file of ``depth`` (8 or 16) bits; ``channels`` counts colour channels, 1 or 3; if ``transparent``,
-    an alpha channel follows them.
+    an alpha channel follows them. A video has several ``frames``, ``rate`` of them a second, each of ``width`` ×
+    ``height`` pixels, in a film strip (`app.images.strip`); ``media_type`` is what it was, ``image/png`` for a still.
     """
 
     path: Path
@@ -39,6 +40,9 @@ class Intake:
     channels: int
     depth: int
     transparent: bool
+    frames: int = 1
+    rate: float = 0.0
+    media_type: str = "image/png"
 
 
 class DecodingServer:

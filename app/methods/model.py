@@ -3,8 +3,10 @@
 A method is declared once; its form, its API schema, its command line options and its page come from that.
 """
 
+import tempfile
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, Literal, Protocol
 
 import numpy as np
@@ -32,6 +34,20 @@ class StillParams(BaseModel):
     )
 
 
+class MovingParams(StillParams):
+    """Parameters that every method of moving textures has besides."""
+
+    frames: int | None = Field(None, ge=2, title="Frames", description="Frames of the video; default: as the clip.")
+    loop: bool = Field(
+        True,
+        title="Loop",
+        description="The last frame continues in the first, so that the video plays for ever without a jump.",
+    )
+    tileable: bool = Field(
+        True, title="Tileable", description="Opposite edges of every frame meet, so that it tiles without a seam."
+    )
+
+
 class Progress(Protocol):
     """What a method calls between pieces of work; it raises when the experiment is cancelled or out of time.
 
@@ -44,45 +60,62 @@ class Progress(Protocol):
 
 @dataclass(frozen=True)
 class Slot:
-    """One input a method asks for."""
+    """One input a method asks for; a ``moving`` one is a video."""
 
     name: str
     title: str
     summary: str
+    moving: bool = False
 
 
 @dataclass(frozen=True)
 class Size:
-    """Size of an input, known before its pixels are read."""
+    """Size of an input, known before its pixels are read; a still one has one frame."""
 
     width: int
     height: int
     channels: int
+    frames: int = 1
+
+
+@dataclass(frozen=True)
+class Film:
+    """Frames of a video: (T, H, W, C) uint8, and ``rate``, how many are shown a second."""
+
+    frames: NDArray[np.uint8]
+    rate: float
 
 
 @dataclass(frozen=True)
 class Source:
     """One input as a method is given it: the crop's pixels.
 
-    ``pixels`` is (H, W, C) float32 in the sample's own range [0, ``peak``]; ``peak`` is 255 or 65535.
+    ``pixels`` is (H, W, C) float32 in the sample's own range [0, ``peak``]; ``peak`` is 255 or 65535. An input of a
+    moving slot has its ``film`` besides; its ``pixels`` are the first frame's.
     """
 
     pixels: NDArray[np.float32]
     peak: int
+    film: Film | None = None
 
     @property
     def size(self) -> Size:
         height, width, channels = self.pixels.shape
-        return Size(width, height, channels)
+        return Size(width, height, channels, 1 if self.film is None else len(self.film.frames))
 
 
 @dataclass(frozen=True)
 class Context:
-    """What a run may use: ``depth`` is the bits per channel of the pictures, 8 or 16."""
+    """What a run may use.
+
+    ``depth`` is the bits per channel of still pictures, 8 or 16; ``scratch`` the directory for files that are too
+    large to be kept in memory until they are given back.
+    """
 
     depth: Literal[8, 16]
     threads: int
     progress: Progress
+    scratch: Path = field(default_factory=lambda: Path(tempfile.gettempdir()))
 
     def between(self, begin: float, end: float) -> Progress:
         """A progress callback whose fractions 0–1 are the part of the run from ``begin`` to ``end``."""
@@ -105,20 +138,25 @@ class Fact:
 
 @dataclass(frozen=True)
 class Picture:
-    """One picture a method gives back, already a PNG file.
+    """One picture a method gives back, already a file.
 
     ``kind`` says what it is: a ``texture`` that was synthesised (the structure meter measures it, and pages show it
     at once), or a ``view`` of something on the way, such as a spectrum. ``facts`` go into the experiment's
-    diagnostics.
+    diagnostics. ``data`` is the file's content, or the file itself in the context's ``scratch`` directory, which then
+    belongs to who takes the picture. A still picture is a PNG file of one frame; a moving one has several, ``rate`` of
+    them a second.
     """
 
     name: str
     title: str
     width: int
     height: int
-    png: bytes
+    data: bytes | Path
     kind: Literal["texture", "view"] = "view"
     facts: tuple[Fact, ...] = ()
+    media_type: str = "image/png"
+    frames: int = 1
+    rate: float = 0.0
 
 
 def first_size(sizes: Sequence[Size]) -> tuple[int, int]:
@@ -161,6 +199,9 @@ class Method:
     phase : bool
         Whether it is driven by the random phase that `rpn` and `adsn` share: at one seed and size all such methods
         have the same phase.
+    memory : callable ``(sizes, params) -> int``, optional
+        Bytes that a run needs at its peak beside the interpreter, for one whose need grows with what is asked for;
+        widths, heights and frames are filled in.
     """
 
     name: str
@@ -177,3 +218,9 @@ class Method:
     toroidal: Callable[[Any], bool] = lambda params: True
     most_pixels: int | None = None
     phase: bool = False
+    memory: Callable[[Sequence[Size], Any], int] | None = None
+
+    @property
+    def moving(self) -> bool:
+        """Whether it makes videos, of which `MovingParams` are the parameters."""
+        return any(slot.moving for slot in self.inputs)

@@ -10,7 +10,7 @@ from typing import Any
 
 from app.errors import InvalidInputError
 from app.experiments.model import Experiment, ExperimentInput, Output, Sample, Status
-from app.images.crop import Rectangle
+from app.images.crop import Frames, Rectangle
 from app.store.schema import EPOCH
 
 Row = Any  # rows of SQLAlchemy have their columns as attributes, unknown to a type checker
@@ -36,7 +36,7 @@ def row_of_experiment(experiment: Experiment) -> dict[str, Any]:
 
 def input_rows(experiment: Experiment) -> list[dict[str, Any]]:
     return [
-        {"experiment": experiment.id, "place": place, "sample": item.sample, **asdict(item.crop)}
+        {"experiment": experiment.id, "place": place, "sample": item.sample, **asdict(item.crop), **asdict(item.frames)}
         for place, item in enumerate(experiment.inputs)
     ]
 
@@ -50,12 +50,13 @@ def experiments_of(rows: Sequence[Row], input_rows: Sequence[Row], output_rows: 
     inputs: dict[str, list[ExperimentInput]] = defaultdict(list)
     for row in input_rows:
         crop = Rectangle(row.x, row.y, row.width, row.height)
-        inputs[row.experiment].append(ExperimentInput(row.sample, crop))
+        frames = Frames(row.first, row._mapping["count"])  # a row is a tuple, which has a method of that name
+        inputs[row.experiment].append(ExperimentInput(row.sample, crop, frames))
     outputs: dict[str, list[Output]] = defaultdict(list)
     for row in output_rows:
-        outputs[row.experiment].append(
-            Output(row.name, row.title, row.media_type, row.width, row.height, row.bytes, row.digest, row.kind)
-        )
+        values = dict(row._mapping)
+        del values["experiment"], values["place"]
+        outputs[row.experiment].append(Output(**values))
     return [
         Experiment(
             **{

@@ -44,6 +44,7 @@ samples = sa.Table(
     sa.Column("media_type", sa.Text, nullable=False),
     sa.Column("title", sa.Text),
     sa.Column("bundled", sa.Boolean, nullable=False),
+    sa.Column("rate", sa.Float, nullable=False, server_default="0"),
     sa.Column("owner", sa.Text),
 )
 
@@ -77,6 +78,8 @@ inputs = sa.Table(
     sa.Column("y", sa.Integer, nullable=False),
     sa.Column("width", sa.Integer, nullable=False),
     sa.Column("height", sa.Integer, nullable=False),
+    sa.Column("first", sa.Integer, nullable=False, server_default="0"),
+    sa.Column("count", sa.Integer, nullable=False, server_default="1"),
 )
 
 outputs = sa.Table(
@@ -92,6 +95,8 @@ outputs = sa.Table(
     sa.Column("bytes", sa.BigInteger, nullable=False),
     sa.Column("digest", sa.Text, nullable=False, index=True),
     sa.Column("kind", sa.Text, nullable=False, server_default="view"),
+    sa.Column("frames", sa.Integer, nullable=False, server_default="1"),
+    sa.Column("rate", sa.Float, nullable=False, server_default="0"),
 )
 
 deleted = sa.Table("deleted", metadata, sa.Column("id", sa.Text, primary_key=True))

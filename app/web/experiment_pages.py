@@ -214,7 +214,7 @@ def again(
     parameters = {key: value for key, value in experiment.parameters.items() if key in known}
     if seed == "new":
         parameters["seed"] = secrets.randbelow(SEEDS)
-    inputs = tuple(NewInput(source.sample, source.crop) for source in experiment.inputs)
+    inputs = tuple(NewInput(source.sample, source.crop, source.frames) for source in experiment.inputs)
     owner = token or new_token()
     listed = experiment.listed or is_exhibit(experiment)
     run = service.submit(NewExperiment(name, inputs, parameters, listed), owner)

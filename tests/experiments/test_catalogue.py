@@ -16,7 +16,7 @@ from app.errors import DeletedError, ForbiddenError, NotFoundError
 from app.experiments import catalogue
 from app.experiments.model import Sample, Status
 from app.experiments.service import Service
-from app.experiments.submission import NewExperiment, NewInput, prepare
+from app.experiments.submission import Allowed, NewExperiment, NewInput, prepare
 from app.gallery.exhibits import exhibits
 from app.gallery.groups import groups
 from app.gallery.identity import identifier
@@ -78,8 +78,8 @@ def test_every_exhibit_is_a_small_experiment_that_can_run(exhibit: Exhibit) -> N
         NewExperiment(exhibit.method, inputs, exhibit.parameters),
         catalogue.OWNER,
         sample=_sample,
-        transparent=lambda sample, crop: False,
-        max_output_pixels=MOST_PIXELS,
+        transparent=lambda sample, crop, frames: False,
+        allowed=Allowed(MOST_PIXELS, MOST_PIXELS, 1 << 31),
     )
     assert max(source.crop.width * source.crop.height for source in experiment.inputs) <= MOST_PIXELS
 

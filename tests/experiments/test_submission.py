@@ -7,7 +7,7 @@ import pytest
 
 from app.errors import InvalidInputError, TooLargeError
 from app.experiments.model import Experiment, Sample
-from app.experiments.submission import NewExperiment, NewInput, prepare
+from app.experiments.submission import Allowed, NewExperiment, NewInput, prepare
 from app.images.crop import Rectangle
 
 SAMPLES = {
@@ -22,8 +22,8 @@ def prepared(method: str, *names: str, crop: Rectangle | None = None, **paramete
         NewExperiment(method, inputs, parameters),
         "owner",
         sample=SAMPLES.__getitem__,
-        transparent=lambda sample, crop: False,
-        max_output_pixels=1 << 20,
+        transparent=lambda sample, crop, frames: False,
+        allowed=Allowed(1 << 20, 1 << 24, 1 << 30),
     )
 
 
@@ -66,8 +66,8 @@ def test_a_texture_that_a_method_could_not_hold_in_memory_is_refused(method: str
             NewExperiment(method, inputs, {"width": 8192, "height": 8192}),
             "owner",
             sample=SAMPLES.__getitem__,
-            transparent=lambda sample, crop: False,
-            max_output_pixels=1 << 26,
+            transparent=lambda sample, crop, frames: False,
+            allowed=Allowed(1 << 26, 1 << 26, 1 << 30),
         )
 
     if fits:

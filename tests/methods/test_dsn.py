@@ -22,7 +22,7 @@ def run(name="dsn", *, channels=3, depth=8, **parameters):
 
 
 def pixels(picture):
-    return png_decode(picture.png).astype(float)
+    return png_decode(picture.data).astype(float)
 
 
 @pytest.mark.parametrize("wrong", [{"order": 0}, {"order": 10**9 + 1}, {"order": 2.5}, {"spot": "star"}, {"radius": 0}])
@@ -55,7 +55,7 @@ def test_convergence_gives_every_order_and_the_limit_as_textures():
     made = run(convergence=True)
     assert list(made) == ["texture", *GALLERY, "adsn", "crop", "spot", "points"]
     assert [name for name, picture in made.items() if picture.kind == "texture"] == ["texture", *GALLERY, "adsn"]
-    assert made["dsn-100"].png == made["texture"].png  # 100 is the default order
+    assert made["dsn-100"].data == made["texture"].data  # 100 is the default order
     assert made["dsn-10000"].title == "n = 10\u00a0000"
 
 

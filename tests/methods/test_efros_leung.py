@@ -89,7 +89,7 @@ def test_it_gives_the_texture_the_crop_the_maps_and_the_order(channels):
     assert list(made) == ["texture", "crop", "copy-map", "copy-map-key", "order"]
     assert [picture.kind for picture in made.values()] == ["texture", *["view"] * 4]
     grown = efros_leung(source.pixels, 33, 40, seed=2)
-    pixels = {name: png_decode(picture.png) for name, picture in made.items()}
+    pixels = {name: png_decode(picture.data) for name, picture in made.items()}
     assert (pixels["texture"] == grown.texture.reshape(pixels["texture"].shape)).all()
     assert (pixels["copy-map"] == pixels["copy-map-key"][grown.copied[:, :, 0], grown.copied[:, :, 1]]).all()
     assert pixels["copy-map-key"].shape == (24, 30, 3)
@@ -109,7 +109,7 @@ def test_the_verbatim_share_is_a_fact_of_the_texture():
 def test_every_colour_of_a_16_bit_texture_is_one_of_the_crop():
     source = crop(peak=65535)
     source.pixels[:, ::2] += 3  # values that 8 bits would not tell apart
-    texture = png_decode(pictures(source, depth=16, width=37, height=37)["texture"].png)
+    texture = png_decode(pictures(source, depth=16, width=37, height=37)["texture"].data)
     assert texture.dtype == np.uint16
     assert {*map(tuple, texture.reshape(-1, 3))} <= {*map(tuple, source.pixels.reshape(-1, 3).astype(int))}
 

@@ -75,7 +75,7 @@ def test_the_texture_is_the_rounded_synthesis(parameters):
         **{key: options.pop(key) for key in ("scales", "orientations", "edges") & options.keys()}
     )
     expected = heeger_bergen(source.pixels, seed=4, decomposition=decomposition, **options)
-    texture = png_decode(pictures(source, seed=4, **parameters)["texture"].png)
+    texture = png_decode(pictures(source, seed=4, **parameters)["texture"].data)
     assert (texture == np.floor(expected.clip(0, 255) + 0.5)).mean() > 0.999
 
 
@@ -88,11 +88,11 @@ def test_the_way_from_noise_to_texture_is_shown(iterations, views):
     assert list(made) == ["texture", "crop", *views, "crop-bands", "texture-bands"]
     assert [name for name, picture in made.items() if picture.kind == "texture"] == ["texture"]
     fewer = pictures(crop(), iterations=iterations, seed=1)
-    assert fewer["noise"].png != made["noise"].png
+    assert fewer["noise"].data != made["noise"].data
     if iterations > 1:
         assert (
-            png_decode(made["iteration-1"].png).tolist()
-            == png_decode(pictures(crop(), iterations=1)["texture"].png).tolist()
+            png_decode(made["iteration-1"].data).tolist()
+            == png_decode(pictures(crop(), iterations=1)["texture"].data).tolist()
         )
 
 
@@ -109,7 +109,7 @@ def test_the_sub_bands_are_laid_out_by_scale_and_orientation(scales, orientation
     for name, (height, width) in {"crop-bands": (40, 50), "texture-bands": (43, 60)}.items():
         assert made[name].height == (scales + 1) * (height + 4) - 4
         assert made[name].width == columns * (width + 4) - 4
-        picture = png_decode(made[name].png)
+        picture = png_decode(made[name].data)
         assert picture.ndim == 2
         # a band has mean 0 and a deviation of a sixth of the range, but for what is cut off
         cell = picture[:height, :width]

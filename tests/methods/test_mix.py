@@ -25,7 +25,7 @@ def run(sources, name="mix", depth=8, **parameters):
 
 
 def pixels(picture):
-    return png_decode(picture.png).astype(int)
+    return png_decode(picture.data).astype(int)
 
 
 def sizes(count):
@@ -88,7 +88,7 @@ def test_a_path_begins_with_the_adsn_of_its_first_sample():
     first = crop()
     made = run([first, crop(seed=1)], weights="1,0", strip=2, seed=3)
     expected = run([first], "adsn", seed=3)["texture"]
-    assert made["mix-1"].png == made["texture"].png == expected.png
+    assert made["mix-1"].data == made["texture"].data == expected.data
 
 
 @pytest.mark.parametrize("count", [2, 3, 4])
@@ -105,7 +105,7 @@ def test_with_more_than_two_samples_each_ones_own_texture_takes_the_place_of_the
     sources = [crop(), crop(seed=1), crop(seed=2)]
     made = run(sources, seed=3)
     assert list(made) == ["texture", "crop", "crop-2", "crop-3", "sample-1", "sample-2", "sample-3"]
-    assert made["sample-1"].png == run(sources[:1], "adsn", seed=3)["texture"].png
+    assert made["sample-1"].data == run(sources[:1], "adsn", seed=3)["texture"].data
 
 
 def test_no_path_is_made_where_none_is_asked_for():

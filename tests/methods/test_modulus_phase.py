@@ -22,7 +22,7 @@ def run(sources, depth=8, **parameters):
 
 
 def pixels(picture):
-    return png_decode(picture.png).astype(int)
+    return png_decode(picture.data).astype(int)
 
 
 def test_it_gives_both_swapped_pictures_the_crops_and_modulus_and_phase_of_each():

@@ -32,7 +32,7 @@ def pictures(name, source, *, depth=8, threads=2, progress=lambda stage, fractio
 
 
 def pixels(picture):
-    return png_decode(picture.png)
+    return png_decode(picture.data)
 
 
 @BOTH
@@ -194,7 +194,7 @@ def test_without_the_periodic_component_the_spot_is_the_crops_and_the_other_step
     for step in ("crop", "periodic", "smooth"):
         assert made[step] == usual[step]
     for step in ("texture", "spot", "input-spectrum", "output-spectrum"):
-        assert made[step].png != usual[step].png
+        assert made[step].data != usual[step].data
     if not size:
         assert (pixels(made["spot"]) == source.pixels).all()
         # the slope along x jumps at the border, which is all in row 0 of the spectrum: the middle one of its picture
@@ -237,4 +237,4 @@ def test_the_progress_never_goes_back_and_ends_at_one(name, parameters):
 
 def test_pillow_reads_the_texture():
     texture = pictures("adsn", crop(), width=60, height=61)["texture"]
-    assert Image.open(io.BytesIO(texture.png)).convert("RGB").size == (60, 61)
+    assert Image.open(io.BytesIO(texture.data)).convert("RGB").size == (60, 61)

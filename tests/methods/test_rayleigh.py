@@ -24,13 +24,13 @@ def test_it_gives_every_step_as_a_picture():
         "texture", "crop", "periodic", "rpn", "adsn", "input-spectrum", "output-spectrum",
     ]  # fmt: skip
     assert [name for name, picture in made.items() if picture.kind == "texture"] == ["texture", "rpn", "adsn"]
-    assert png_decode(made["texture"].png).shape == (60, 70, 3)
-    assert png_decode(made["output-spectrum"].png).shape == (60, 70)
+    assert png_decode(made["texture"].data).shape == (60, 70, 3)
+    assert png_decode(made["output-spectrum"].data).shape == (60, 70)
 
 
 @pytest.mark.parametrize("name", ["rpn", "adsn"])
 def test_the_textures_to_compare_with_are_those_of_rpn_and_adsn_at_the_same_seed(name):
-    expected, seen = png_decode(run(name)["texture"].png), png_decode(run("rayleigh")[name].png)
+    expected, seen = png_decode(run(name)["texture"].data), png_decode(run("rayleigh")[name].data)
     assert np.abs(expected.astype(int) - seen).max() <= 1
 
 
@@ -43,7 +43,7 @@ def test_it_measures_the_correlation_which_is_near_half_the_root_of_pi():
 def test_a_constant_crop_has_nothing_that_the_noise_could_damage():
     constant = Source(np.full((8, 9, 3), [0, 77, 255], np.float32), 255)
     texture = next(iter(RAYLEIGH.run([constant], RAYLEIGH.params(), Context(8, 1, lambda stage, fraction: None))))
-    assert (png_decode(texture.png) == [0, 77, 255]).all()
+    assert (png_decode(texture.data) == [0, 77, 255]).all()
     assert texture.facts[0].value == 1
 
 
@@ -57,5 +57,5 @@ def test_a_size_beyond_the_crops_is_refused_with_words_that_help(asked, field):
 def test_a_smaller_size_takes_the_centre():
     RAYLEIGH.check([Size(70, 60, 3)], RAYLEIGH.params(width=40, height=30))
     made = run("rayleigh", width=40, height=31)
-    assert png_decode(made["texture"].png).shape == png_decode(made["periodic"].png).shape == (31, 40, 3)
-    assert png_decode(made["crop"].png).shape == (60, 70, 3)
+    assert png_decode(made["texture"].data).shape == png_decode(made["periodic"].data).shape == (31, 40, 3)
+    assert png_decode(made["crop"].data).shape == (60, 70, 3)

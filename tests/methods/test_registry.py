@@ -14,7 +14,7 @@ from PIL import Image
 
 from app.errors import CancelledError, InvalidInputError
 from app.experiments.model import Sample
-from app.experiments.submission import NewExperiment, NewInput, prepare
+from app.experiments.submission import Allowed, NewExperiment, NewInput, prepare
 from app.images.crop import Rectangle
 from app.methods.model import Context, Method, Picture, Progress, Size, Source, StillParams
 from app.methods.registry import METHODS
@@ -89,7 +89,11 @@ def test_every_figure_is_an_experiment_on_bundled_samples_that_shows_its_outputs
             assert {item.sample for item in inputs} <= known.keys()
             request = NewExperiment(exhibit.method, inputs, exhibit.parameters)
             prepared = prepare(
-                request, "", sample=_sample, transparent=lambda sample, crop: False, max_output_pixels=1 << 20
+                request,
+                "",
+                sample=_sample,
+                transparent=lambda sample, crop, frames: False,
+                allowed=Allowed(1 << 20, 1 << 24, 1 << 30),
             )
             assert prepared.method == exhibit.method
             assert exhibit.show
@@ -111,9 +115,9 @@ def test_the_texture_comes_first_and_every_crop_is_shown(method: Method) -> None
     assert len(set(names)) == len(names)
     for number, source in enumerate(sources, 1):
         shown = pictures[names.index("crop" if number == 1 else f"crop-{number}")]
-        assert (png_decode(shown.png) == source.pixels).all()
+        assert (png_decode(shown.data) == source.pixels).all()
     for picture in pictures:
-        with Image.open(io.BytesIO(picture.png)) as decoded:
+        with Image.open(io.BytesIO(picture.data)) as decoded:
             assert decoded.size == (picture.width, picture.height)
 
 
@@ -123,7 +127,7 @@ def test_any_size_grey_or_colour_gives_a_texture_of_that_kind(method: Method, sh
     height, width, channels = shape
     texture = next(run(method, crops_for(method, height=height, width=width, channels=channels)))
     assert (texture.width, texture.height) == (width, height)
-    pixels = png_decode(texture.png)
+    pixels = png_decode(texture.data)
     assert pixels.shape == ((height, width, 3) if channels == 3 else (height, width))
     assert pixels.std() > 0
 
@@ -132,19 +136,19 @@ def test_any_size_grey_or_colour_gives_a_texture_of_that_kind(method: Method, sh
 def test_sixteen_bits_are_the_same_texture_more_finely(method: Method) -> None:
     """Both depths are roundings of the same floats; a crop of 16 bits gives the texture of its 8-bit one, scaled."""
     sources = crops_for(method)
-    coarse = png_decode(next(run(method, sources, depth=8)).png).astype(float)
-    fine = png_decode(next(run(method, sources, depth=16)).png)
+    coarse = png_decode(next(run(method, sources, depth=8)).data).astype(float)
+    fine = png_decode(next(run(method, sources, depth=16)).data)
     assert fine.dtype == np.uint16
     assert np.abs(fine / 257 - coarse).max() <= 0.51
     deep = [Source(source.pixels * 257, 65535) for source in sources]
-    assert np.abs(png_decode(next(run(method, deep, depth=8)).png) - coarse).max() <= 1
+    assert np.abs(png_decode(next(run(method, deep, depth=8)).data) - coarse).max() <= 1
 
 
 @EVERY
 def test_the_seed_alone_decides_and_not_the_threads(method: Method) -> None:
     sources = crops_for(method)
     first, again, other = (
-        [picture.png for picture in run(method, sources, threads=threads, seed=seed)]
+        [picture.data for picture in run(method, sources, threads=threads, seed=seed)]
         for threads, seed in ((1, 5), (2, 5), (2, 6))
     )
     assert first == again
@@ -180,7 +184,7 @@ def test_what_the_progress_raises_ends_the_run(method: Method, part: float) -> N
 @EVERY
 def test_a_constant_crop_gives_that_constant(method: Method) -> None:
     constant = Source(np.full((48, 64, 3), (40, 120, 200), np.float32), 255)
-    pixels = png_decode(next(run(method, [constant] * len(method.inputs))).png)
+    pixels = png_decode(next(run(method, [constant] * len(method.inputs))).data)
     assert np.abs(pixels.astype(int) - (40, 120, 200)).max() <= 1
 
 

@@ -21,7 +21,7 @@ def run(name="texton", *, source=PIXELS, seed=3, **parameters):
 
 
 def pixels(picture):
-    return png_decode(picture.png).astype(float)
+    return png_decode(picture.data).astype(float)
 
 
 @pytest.mark.parametrize("wrong", [{"cut": 0}, {"cut": -3}, {"alpha": 0.1}])

@@ -12,10 +12,11 @@ from app.errors import DeletedError, InvalidInputError, NotFoundError
 from app.experiments.model import Experiment
 from app.experiments.ownership import new_token
 from app.experiments.service import Service
-from app.experiments.submission import NewExperiment, NewInput
+from app.experiments.submission import NewExperiment
 from app.methods.registry import METHODS
+from app.web.api.bodies import IDENTIFIER, Body, InputBody, ListedBody
 from app.web.api.prefer import LONGEST, wait_seconds
-from app.web.api.records import API, IDENTIFIER, Body, ExperimentList, ExperimentRecord, InputBody, ListedBody
+from app.web.api.records import API, ExperimentList, ExperimentRecord
 from app.web.deps import ServiceDep, TokenDep, base_url, remember_owner
 from app.web.openapi import EXAMPLE_METHOD, EXAMPLE_SAMPLE, OWNER, parameters_schema, problems
 from app.web.stopping import unless_stopping
@@ -72,9 +73,7 @@ class ExperimentBody(Body):
                 f"There is no method of this name. The methods are: {', '.join(METHODS)}.", "method"
             )
         self._check_types()
-        inputs = tuple(
-            NewInput(source.sample, source.crop.rectangle() if source.crop else None) for source in self.inputs
-        )
+        inputs = tuple(source.wanted() for source in self.inputs)
         return NewExperiment(self.method, inputs, self.parameters, self.listed)
 
     def _check_types(self) -> None:

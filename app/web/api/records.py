@@ -1,49 +1,15 @@
-"""The JSON of the API: what is sent and what comes back, and how domain objects become it."""
+"""The JSON that the API answers with, and how domain objects become it."""
 
 from datetime import datetime
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+from pydantic import BaseModel, Field
 
 from app.experiments.model import Experiment, Output, Sample, Snapshot, Status
-from app.images.crop import Rectangle
 from app.methods.model import Method
+from app.web.api.bodies import Crop, TimeRange
 
 API = "/api/v1"
-IDENTIFIER = r"^[A-Za-z0-9_-]{1,64}$"
-Identifier = Annotated[str, StringConstraints(pattern=IDENTIFIER)]
-_FAR = 1_000_000  # pixels; beyond any sample, and small enough for every database
-
-
-class Body(BaseModel):
-    """A JSON body: no unknown fields, no guessing at types."""
-
-    model_config = ConfigDict(strict=True, extra="forbid")
-
-
-class Crop(Body):
-    """A rectangle in pixels of the upright sample."""
-
-    x: int = Field(ge=0, le=_FAR, description="From the left edge.")
-    y: int = Field(ge=0, le=_FAR, description="From the top edge.")
-    width: int = Field(ge=1, le=_FAR)
-    height: int = Field(ge=1, le=_FAR)
-
-    def rectangle(self) -> Rectangle:
-        return Rectangle(self.x, self.y, self.width, self.height)
-
-
-class InputBody(Body):
-    """One input of an experiment."""
-
-    sample: Identifier = Field(description="Id of an uploaded or bundled sample.")
-    crop: Crop | None = Field(None, description="Default: the whole sample.")
-
-
-class ListedBody(Body):
-    """What may be changed of an experiment."""
-
-    listed: bool = Field(description="Whether the archive shows it; otherwise only its link leads to it.")
 
 
 class SampleRecord(BaseModel):
@@ -55,7 +21,8 @@ class SampleRecord(BaseModel):
     channels: int = Field(description="Colour channels: 1 or 3.")
     depth: int = Field(description="Bits per channel: 8 or 16.")
     frames: int = Field(description="1 for a still picture.")
-    media_type: str
+    rate: float = Field(description="Frames a second; 0 for a still picture.")
+    media_type: str = Field(description="Of a video, what it was uploaded as.")
     title: str | None = Field(description="Of a bundled sample.")
     transparent: bool = Field(description="Whether some pixels are not opaque; a crop must not hold such.")
     created_at: datetime
@@ -72,6 +39,7 @@ class SampleRecord(BaseModel):
             channels=sample.channels,
             depth=sample.depth,
             frames=sample.frames,
+            rate=sample.rate,
             media_type=sample.media_type,
             title=sample.title,
             transparent=sample.transparent,
@@ -92,6 +60,7 @@ class InputRecord(BaseModel):
 
     sample: str
     crop: Crop
+    frames: TimeRange
 
 
 class OutputRecord(BaseModel):
@@ -104,6 +73,8 @@ class OutputRecord(BaseModel):
     width: int
     height: int
     bytes: int
+    frames: int = Field(description="1 for a still picture.")
+    rate: float = Field(description="Frames a second; 0 for a still picture.")
     url: str
 
     @classmethod
@@ -116,6 +87,8 @@ class OutputRecord(BaseModel):
             width=output.width,
             height=output.height,
             bytes=output.bytes,
+            frames=output.frames,
+            rate=output.rate,
             url=f"{experiment_url}/outputs/{output.name}",
         )
 
@@ -190,7 +163,8 @@ class ExperimentRecord(BaseModel):
             inputs=[
                 InputRecord(
                     sample=source.sample,
-                    crop=Crop(x=source.crop.x, y=source.crop.y, width=source.crop.width, height=source.crop.height),
+                    crop=Crop(**vars(source.crop)),
+                    frames=TimeRange(**vars(source.frames)),
                 )
                 for source in experiment.inputs
             ],
@@ -221,6 +195,7 @@ class SlotRecord(BaseModel):
     name: str
     title: str
     summary: str
+    moving: bool = Field(description="Whether it is a video.")
 
 
 class ReferenceRecord(BaseModel):

@@ -7,7 +7,8 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import FileResponse, Response
 
 from app.errors import InvalidInputError
-from app.web.api.records import API, IDENTIFIER, SampleList, SampleRecord
+from app.web.api.bodies import IDENTIFIER
+from app.web.api.records import API, SampleList, SampleRecord
 from app.web.deps import ServiceDep, TokenDep, base_url, in_upload_thread
 from app.web.files import FOREVER, SUFFIXES, file_response
 from app.web.openapi import EXAMPLE_SAMPLE, OWNER, problems

@@ -9,7 +9,8 @@ from starlette.concurrency import run_in_threadpool
 from app.experiments.meter import Verdict, reading
 from app.images.crop import Rectangle
 from app.synthesis.structure import SIGMA
-from app.web.api.records import API, Crop
+from app.web.api.bodies import Crop
+from app.web.api.records import API
 from app.web.api.samples import SampleId
 from app.web.deps import ServiceDep, in_upload_thread
 from app.web.openapi import problems

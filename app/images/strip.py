@@ -1,0 +1,60 @@
+"""A video as it is stored: a film strip, its frames one below the other in one PNG file.
+
+So a crop of any frame is a rectangle of one picture, and is read without decoding the others.
+"""
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.images.crop import Frames, Rectangle
+from app.images.read import has_transparency, read_crop
+
+
+def place(crop: Rectangle, frame: int, height: int) -> Rectangle:
+    """Where a frame's crop lies in the strip of frames of this height.
+
+    Examples
+    --------
+    >>> place(Rectangle(5, 6, 20, 10), 2, 100)
+    Rectangle(x=5, y=206, width=20, height=10)
+    """
+    return Rectangle(crop.x, crop.y + frame * height, crop.width, crop.height)
+
+
+def read_frames(path: Path, crop: Rectangle, frames: Frames, height: int) -> NDArray[np.uint8]:
+    """Cut a crop out of a range of frames.
+
+    Parameters
+    ----------
+    path : Path
+        The strip; `app.images.png` has written it.
+    crop : Rectangle
+        Inside a frame.
+    frames : Frames
+    height : int
+        Of a frame.
+
+    Returns
+    -------
+    ndarray of uint8, shape (T, H, W, C)
+
+    Raises
+    ------
+    InvalidInputError
+        If the crop reaches outside the strip or holds pixels that are not opaque.
+    """
+    first = read_crop(path, place(crop, frames.first, height))
+    film = np.empty((frames.count, *first.shape), np.uint8)
+    film[0] = first
+    for index in range(1, frames.count):
+        film[index] = read_crop(path, place(crop, frames.first + index, height))
+    return film
+
+
+def frames_have_transparency(path: Path, crop: Rectangle, frames: Frames, height: int) -> bool:
+    """Whether the crop holds a pixel that is not opaque in any of the frames."""
+    return any(
+        has_transparency(path, place(crop, frame, height)) for frame in range(frames.first, frames.first + frames.count)
+    )
