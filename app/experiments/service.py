@@ -2,13 +2,13 @@
 
 import threading
 from collections.abc import AsyncGenerator, Mapping, Sequence
-from dataclasses import replace
 from datetime import timedelta
 from functools import partial
 from pathlib import Path
 from typing import Any, Literal
 
-from app.errors import BusyError, ForbiddenError
+from app.errors import ForbiddenError
+from app.experiments.acceptance import Acceptance, Plan
 from app.experiments.cache import FileCache
 from app.experiments.catalogue import Catalogue
 from app.experiments.direct import Direct
@@ -18,11 +18,11 @@ from app.experiments.intake import SampleIntake
 from app.experiments.meter import Meter
 from app.experiments.model import Experiment, Output, Page, Sample, Snapshot
 from app.experiments.outputs import Outputs
-from app.experiments.ownership import new_token, same, token_digest
+from app.experiments.ownership import same, token_digest
 from app.experiments.pictures import Pictures
 from app.experiments.ports import BlobStore, Executor, ExperimentStore
 from app.experiments.run import DEEP
-from app.experiments.submission import Allowed, NewExperiment, prepare
+from app.experiments.submission import NewExperiment
 from app.images.convert import Format
 from app.images.crop import Rectangle
 from app.settings import Settings
@@ -56,11 +56,17 @@ class Service:
             store, blobs, executor, self._pictures, self._following, queue_limit=settings.queue_limit
         )
         self._intake = SampleIntake(store, blobs, settings)
+        self._acceptance = Acceptance(store, executor, self._intake, settings)
         self.catalogue = Catalogue(store, executor, self._intake, settings)
         keep, longest = timedelta(hours=settings.sample_keep_hours), timedelta(hours=1, seconds=settings.time_limit)
         self._housekeeping = Housekeeping(store, blobs, cache, sample_keep=keep, longest_run=longest)
         self._direct = Direct(
-            self._intake, self._housekeeping, self._outputs, self._following, self._submit_transient, self._forget
+            self._intake,
+            self._housekeeping,
+            self._outputs,
+            self._following,
+            self._acceptance.submit_transient,
+            self._forget,
         )
         self._closing = threading.Event()
         self._background: list[threading.Thread] = []
@@ -148,7 +154,11 @@ class Service:
         BusyError
             If too many experiments wait already.
         """
-        return self._submit(request, owner_token, transient=False)
+        return self._acceptance.submit(request, owner_token)
+
+    def check(self, request: NewExperiment) -> Plan:
+        """What this experiment would make and take; nothing is kept. Raises as `submit` does, but for `BusyError`."""
+        return self._acceptance.check(request)
 
     def get(self, experiment_id: str) -> Experiment:
         """Raises `NotFoundError` or `DeletedError`."""
@@ -255,24 +265,6 @@ class Service:
         return self._housekeeping.prune(older_than)
 
     # inside
-
-    def _submit(self, request: NewExperiment, owner_token: str, *, transient: bool) -> Experiment:
-        if self._executor.waiting >= self._settings.queue_limit:
-            raise BusyError("Too many experiments wait already. Try again in a minute.")
-        experiment = prepare(
-            request,
-            token_digest(owner_token),
-            sample=self._store.sample,
-            transparent=self._intake.transparent,
-            allowed=Allowed.by(self._settings),
-        )
-        experiment = replace(experiment, transient=transient)
-        self._store.add(experiment)
-        self._executor.submit(experiment.id)
-        return experiment
-
-    def _submit_transient(self, request: NewExperiment) -> Experiment:
-        return self._submit(request, new_token(), transient=True)
 
     def _owned(self, experiment_id: str, token: str | None) -> Experiment:
         experiment = self._store.get(experiment_id)

@@ -102,7 +102,7 @@ def prepare(
     params = params.model_copy(update=filled)
     _check_pixels(method, params, allowed)
     method.check(sizes, params)
-    _check_memory(method, sizes, params, allowed)
+    _check_memory(method, _memory(method, sizes, params), allowed)
     return Experiment(
         id=new_identifier(),
         method=method.name,
@@ -112,6 +112,20 @@ def prepare(
         owner=owner,
         created_at=datetime.now(UTC),
     )
+
+
+def memory_of(experiment: Experiment, sample: Callable[[str], Sample]) -> int:
+    """Bytes that a run of a complete experiment needs, as far as its method says so; else 0."""
+    method = method_named(experiment.method)
+    sizes = [
+        Size(item.crop.width, item.crop.height, sample(item.sample).channels, item.frames.count)
+        for item in experiment.inputs
+    ]
+    return _memory(method, sizes, method.params.model_validate(experiment.parameters))
+
+
+def _memory(method: Method, sizes: list[Size], params: StillParams) -> int:
+    return 0 if method.memory is None else method.memory(sizes, params)
 
 
 def _check_count(method: Method, given: int) -> None:
@@ -142,8 +156,7 @@ def _check_pixels(method: Method, params: StillParams, limits: Allowed) -> None:
         )
 
 
-def _check_memory(method: Method, sizes: list[Size], params: StillParams, allowed: Allowed) -> None:
-    needed = 0 if method.memory is None else method.memory(sizes, params)
+def _check_memory(method: Method, needed: int, allowed: Allowed) -> None:
     if needed > allowed.memory:
         smaller = (
             "a shorter or smaller crop, fewer frames, or a smaller width and height"

@@ -182,6 +182,16 @@ class ExperimentRecord(BaseModel):
         )
 
 
+class PlanRecord(BaseModel):
+    """What an experiment would make and take."""
+
+    width: int = Field(description="Pixels of the texture.")
+    height: int
+    frames: int = Field(description="1 for a still picture.")
+    memory: int = Field(description="Bytes that the run needs at its peak; 0 where it is little in any case.")
+    memory_limit: int = Field(description="Bytes that a run may need; one that needs more is refused.")
+
+
 class ExperimentList(BaseModel):
     """A page of the archive."""
 

@@ -1,0 +1,73 @@
+"""The desk at which experiments are handed in: what can run is accepted, everything else gets its reason at once."""
+
+from dataclasses import dataclass, replace
+
+from app.errors import BusyError
+from app.experiments.intake import SampleIntake
+from app.experiments.model import Experiment
+from app.experiments.ownership import new_token, token_digest
+from app.experiments.ports import Executor, ExperimentStore
+from app.experiments.submission import Allowed, NewExperiment, memory_of, prepare
+from app.settings import Settings
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What an experiment would make and take: pixels and frames of the texture, and bytes of memory of a worker.
+
+    ``memory`` is 0 for a method that needs little, whatever is asked for.
+    """
+
+    width: int
+    height: int
+    frames: int
+    memory: int
+    memory_limit: int
+
+
+class Acceptance:
+    """Accepts experiments.
+
+    Parameters
+    ----------
+    store, executor, intake
+        Those of the service.
+    settings : Settings
+    """
+
+    def __init__(self, store: ExperimentStore, executor: Executor, intake: SampleIntake, settings: Settings) -> None:
+        self._store = store
+        self._executor = executor
+        self._intake = intake
+        self._allowed = Allowed.by(settings)
+        self._queue_limit = settings.queue_limit
+
+    def check(self, request: NewExperiment) -> Plan:
+        """What this would make and take. Raises as `submit` does, but for `BusyError`; nothing is kept."""
+        experiment = self._prepared(request, "")
+        parameters = experiment.parameters
+        return Plan(
+            width=parameters["width"],
+            height=parameters["height"],
+            frames=parameters.get("frames") or 1,
+            memory=memory_of(experiment, self._store.sample),
+            memory_limit=self._allowed.memory,
+        )
+
+    def submit(self, request: NewExperiment, owner_token: str, *, transient: bool = False) -> Experiment:
+        """Accept an experiment: it is on disk and queued when this returns."""
+        if self._executor.waiting >= self._queue_limit:
+            raise BusyError("Too many experiments wait already. Try again in a minute.")
+        experiment = replace(self._prepared(request, token_digest(owner_token)), transient=transient)
+        self._store.add(experiment)
+        self._executor.submit(experiment.id)
+        return experiment
+
+    def submit_transient(self, request: NewExperiment) -> Experiment:
+        """Accept an experiment that is made for one answer."""
+        return self.submit(request, new_token(), transient=True)
+
+    def _prepared(self, request: NewExperiment, owner: str) -> Experiment:
+        return prepare(
+            request, owner, sample=self._store.sample, transparent=self._intake.transparent, allowed=self._allowed
+        )
