@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import Callable, Mapping, Sequence
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any, Literal
 
@@ -10,10 +11,9 @@ from app.experiments.following import Following
 from app.experiments.housekeeping import Housekeeping
 from app.experiments.intake import SampleIntake
 from app.experiments.model import Experiment, Sample, Status
-from app.experiments.outputs import Outputs
+from app.experiments.outputs import AnyFormat, Outputs
 from app.experiments.submission import NewExperiment, NewInput
-from app.images.convert import Format
-from app.images.crop import Rectangle
+from app.images.crop import Frames, Rectangle
 
 
 class Direct:
@@ -51,13 +51,14 @@ class Direct:
         *,
         method: str,
         crops: Sequence[Rectangle | None],
+        frames: Sequence[Frames | None],
         parameters: Mapping[str, Any],
-        file_format: Format,
+        file_format: AnyFormat | None,
         depth: Literal[8, 16] | None,
     ) -> tuple[bytes, str]:
         """The picture and its media type."""
         # It goes on to its end if the caller hangs up: only then is known what to forget.
-        begun = asyncio.ensure_future(asyncio.to_thread(self._begin, uploads, method, crops, parameters))
+        begun = asyncio.ensure_future(asyncio.to_thread(self._begin, uploads, method, crops, frames, parameters))
         try:
             experiment = await asyncio.shield(begun)
             finished = await self._following.wait(experiment.id, float("inf"))
@@ -69,19 +70,25 @@ class Direct:
             await asyncio.shield(self._forgotten(begun))
 
     def _begin(
-        self, uploads: Sequence[Path], method: str, crops: Sequence[Rectangle | None], parameters: Mapping[str, Any]
+        self,
+        uploads: Sequence[Path],
+        method: str,
+        crops: Sequence[Rectangle | None],
+        frames: Sequence[Frames | None],
+        parameters: Mapping[str, Any],
     ) -> Experiment:
         samples: list[Sample] = []
         try:
-            if len(crops) > len(uploads):
-                raise InvalidInputError(
-                    f"There are more crops ({len(crops)}) than pictures ({len(uploads)}).",
-                    f"inputs.{len(uploads)}.crop",
-                )
+            for given, what, field in ((crops, "crops", "crop"), (frames, "time ranges", "frames")):
+                if len(given) > len(uploads):
+                    raise InvalidInputError(
+                        f"There are more {what} ({len(given)}) than files ({len(uploads)}).",
+                        f"inputs.{len(uploads)}.{field}",
+                    )
             for upload in uploads:
                 samples.append(self._intake.add(upload, None))
-            cuts = [*crops, *[None] * (len(samples) - len(crops))]
-            inputs = tuple(NewInput(sample.id, crop) for sample, crop in zip(samples, cuts, strict=True))
+            parts = zip_longest(samples, crops, frames)
+            inputs = tuple(NewInput(sample.id, crop, time) for sample, crop, time in parts)
             return self._submit(NewExperiment(method, inputs, parameters, listed=False))
         except BaseException:
             for sample in samples:

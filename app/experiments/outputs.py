@@ -12,6 +12,9 @@ from app.experiments.ports import BlobStore, Executor, ExperimentStore
 from app.experiments.run import DEEP, DEEP_TEXTURE
 from app.images.convert import Format
 
+FilmFormat = Literal["webm", "mp4"]
+AnyFormat = Format | FilmFormat
+MP4_SUFFIX = "-mp4"  # ends the name of a film's second file: see `app.methods.films`
 DEEP_SECONDS = 120.0  # how long a download waits for its texture at 16 bits
 
 
@@ -53,11 +56,17 @@ class Outputs:
         return output, self._blobs.path(output.digest)
 
     async def converted(
-        self, experiment_id: str, name: str, file_format: Format, depth: Literal[8, 16] | None
+        self, experiment_id: str, name: str, file_format: AnyFormat | None, depth: Literal[8, 16] | None
     ) -> tuple[Path, str]:
-        """An output in another format, and its media type."""
+        """An output in another format, and its media type; by default PNG, and WebM of a film."""
         experiment = await asyncio.to_thread(self._store.get, experiment_id)
         output = self._output(experiment, name)
+        if output.frames > 1:
+            film = self._film(experiment, output, file_format, depth)
+            return self._blobs.path(film.digest), film.media_type
+        if file_format == "webm" or file_format == "mp4":
+            raise InvalidInputError("This is a still picture: ask for png, jpeg, webp or tiff.", "format")
+        file_format = file_format or "png"
         if depth == 16:
             self._pictures.check_deep(file_format)
             output = await self._deep_texture(experiment, output)
@@ -75,6 +84,24 @@ class Outputs:
             raise NotFoundError("This experiment has no outputs yet: it is not finished.")
         names = ", ".join(output.name for output in experiment.outputs if output.listed)
         raise NotFoundError(f"This experiment has no output {name!r}. It has: {names or 'none'}.")
+
+    def _film(
+        self, experiment: Experiment, output: Output, file_format: AnyFormat | None, depth: Literal[8, 16] | None
+    ) -> Output:
+        """The output's film in this format: both are stored."""
+        if depth == 16:
+            raise InvalidInputError("A video has 8 bits per channel: leave the depth out.", "depth")
+        name = output.name.removesuffix(MP4_SUFFIX)
+        files = {file.media_type: file for file in experiment.outputs if file.name in (name, name + MP4_SUFFIX)}
+        found = files.get(f"video/{file_format or 'webm'}")
+        if found is None:
+            raise InvalidInputError(
+                "This is a moving picture: ask for webm or mp4, or take one of the still outputs, such as 'cube'."
+                if output.film
+                else "This picture comes only as it is stored: leave the format out.",
+                "format",
+            )
+        return found
 
     async def _deep_texture(self, experiment: Experiment, output: Output) -> Output:
         if output.name != "texture":

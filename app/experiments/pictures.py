@@ -9,6 +9,8 @@ from app.experiments.cache import FileCache
 from app.experiments.model import Output, Sample
 from app.experiments.ports import BlobStore
 from app.images.convert import PREVIEW, THUMBNAIL, Format, convert, pair, rendition, thumbnails
+from app.images.png import encode_png
+from app.images.strip import read_frame
 
 DEEP_FORMATS = ("png", "tiff")
 SIZES = (256, 512, 1024, 2048)
@@ -25,15 +27,31 @@ class Pictures:
         self._blobs = blobs
         self._cache = cache
 
-    def rendition(self, sample: Sample, size: int | None) -> tuple[Path, str]:
-        """The stored PNG itself, or one whose longer side is at most the next of 256, 512, 1024 and 2048 pixels."""
-        stored = self._blobs.path(sample.digest)
+    def rendition(self, sample: Sample, size: int | None, frame: int = 0) -> tuple[Path, str]:
+        """The picture, of a video one frame: as it is stored, or smaller.
+
+        A smaller one's longer side is at most the next of 256, 512, 1024 and 2048 pixels.
+
+        Raises
+        ------
+        InvalidInputError
+            If there is no such frame.
+        """
+        if not 0 <= frame < sample.frames:
+            raise InvalidInputError(f"The sample has {_count(sample)}; the first is number 0.", "frame")
         if size is None:
-            return stored, PNG
+            return self._still(sample, frame), PNG
         bound = next((step for step in SIZES if step >= size), SIZES[-1])
         media_type = PNG if sample.transparent else "image/jpeg"
-        name = f"{sample.digest}-{bound}.{media_type.removeprefix('image/')}"
-        return self._cache.get(name, lambda: rendition(stored, bound)[0]), media_type
+        name = f"{_part(sample, frame)}-{bound}.{media_type.removeprefix('image/')}"
+        return self._cache.get(name, lambda: rendition(self._still(sample, frame), bound)[0]), media_type
+
+    def _still(self, sample: Sample, frame: int) -> Path:
+        stored = self._blobs.path(sample.digest)
+        if not sample.moving:
+            return stored
+        name = f"{_part(sample, frame)}.png"
+        return self._cache.get(name, lambda: encode_png(read_frame(stored, frame, sample.width, sample.height)))
 
     def converted(self, output: Output, file_format: Format) -> tuple[Path, str]:
         """An output in this format, and its media type."""
@@ -72,6 +90,15 @@ class Pictures:
             raise InvalidInputError(
                 f"{file_format.upper()} has 8 bits per channel only: ask for png or tiff, or for depth 8.", "depth"
             )
+
+
+def _part(sample: Sample, frame: int) -> str:
+    """Begin a file's name; one strip may be cut into frames of several heights."""
+    return f"{sample.digest}-{sample.height}-{frame}" if sample.moving else sample.digest
+
+
+def _count(sample: Sample) -> str:
+    return f"{sample.frames} frames" if sample.moving else "one frame"
 
 
 def _thumbnail_size(name: str, crop: Output, texture: Output) -> tuple[int, int]:

@@ -17,14 +17,13 @@ from app.experiments.housekeeping import Housekeeping, Pruned
 from app.experiments.intake import SampleIntake
 from app.experiments.meter import Meter
 from app.experiments.model import Experiment, Output, Page, Sample, Snapshot
-from app.experiments.outputs import Outputs
+from app.experiments.outputs import AnyFormat, Outputs
 from app.experiments.ownership import same, token_digest
 from app.experiments.pictures import Pictures
 from app.experiments.ports import BlobStore, Executor, ExperimentStore
 from app.experiments.run import DEEP
 from app.experiments.submission import NewExperiment
-from app.images.convert import Format
-from app.images.crop import Rectangle
+from app.images.crop import Frames, Rectangle
 from app.settings import Settings
 from app.synthesis.structure import SIGMA, Structure
 
@@ -130,9 +129,9 @@ class Service:
         """Those that have come in so far, in the order of the catalogue."""
         return self._store.bundled_samples()
 
-    def rendition(self, sample_id: str, size: int | None) -> tuple[Path, str]:
+    def rendition(self, sample_id: str, size: int | None, frame: int = 0) -> tuple[Path, str]:
         """A file that browsers show, and its media type; ``size`` bounds the longer side, None is the full size."""
-        return self._pictures.rendition(self._store.sample(sample_id), size)
+        return self._pictures.rendition(self._store.sample(sample_id), size, frame)
 
     def structure(self, sample_id: str, crop: Rectangle | None = None, sigma: float = SIGMA) -> Structure:
         """How structured a crop is, see `Meter.structure`. Raises `NotFoundError` or `InvalidInputError`."""
@@ -215,7 +214,7 @@ class Service:
         return self._outputs.output(experiment_id, name)
 
     async def converted(
-        self, experiment_id: str, name: str, file_format: Format, depth: Literal[8, 16] | None = None
+        self, experiment_id: str, name: str, file_format: AnyFormat | None, depth: Literal[8, 16] | None = None
     ) -> tuple[Path, str]:
         """An output in another format, and its media type. The texture at 16 bits is computed when first asked for.
 
@@ -235,7 +234,8 @@ class Service:
         method: str,
         crops: Sequence[Rectangle | None],
         parameters: Mapping[str, Any],
-        file_format: Format = "png",
+        frames: Sequence[Frames | None] = (),
+        file_format: AnyFormat | None = None,
         depth: Literal[8, 16] | None = None,
     ) -> tuple[bytes, str]:
         """A texture straight from files: the picture and its media type. Nothing of it is kept, the files included.
@@ -245,8 +245,8 @@ class Service:
         uploads : sequence of Path
             One file for each input.
         method : str
-        crops : sequence of Rectangle or None
-            Of the files, in their order; for those at the end that are left out, and for None, all of the picture.
+        crops, frames : sequence of Rectangle or None, and of Frames or None
+            Of the files, in their order; for those at the end that are left out, and for None, as in `NewInput`.
         parameters : mapping
         file_format, depth
             Of the answer.
@@ -257,7 +257,13 @@ class Service:
             Any of those of `add_sample`, `submit` and `converted`; `ConflictError` if the run failed.
         """
         return await self._direct.synthesize(
-            uploads, method=method, crops=crops, parameters=parameters, file_format=file_format, depth=depth
+            uploads,
+            method=method,
+            crops=crops,
+            frames=frames,
+            parameters=parameters,
+            file_format=file_format,
+            depth=depth,
         )
 
     def prune(self, older_than: timedelta | None) -> Pruned:

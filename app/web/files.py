@@ -10,7 +10,14 @@ from starlette.responses import FileResponse, Response
 
 FOREVER = "public, max-age=31536000, immutable"
 FOREVER_FOR_ME = "private, max-age=31536000, immutable"
-SUFFIXES = {"image/png": ".png", "image/jpeg": ".jpg", "image/webp": ".webp", "image/tiff": ".tif"}
+SUFFIXES = {
+    "image/png": ".png",
+    "image/jpeg": ".jpg",
+    "image/webp": ".webp",
+    "image/tiff": ".tif",
+    "video/webm": ".webm",
+    "video/mp4": ".mp4",
+}
 _RANGE = re.compile(r"bytes=(?:(?P<first>\d{1,18})-(?P<last>\d{1,18})?|-(?P<suffix>\d{1,18}))")
 
 

@@ -44,7 +44,8 @@ def test_waiting_ends_when_its_time_is_over(site):
 
 def test_the_default_crop_is_the_whole_sample(site):
     record = site.finished(inputs=[{"sample": "gravel_gray"}])
-    assert record["inputs"] == [{"sample": "gravel_gray", "crop": {"x": 0, "y": 0, "width": 64, "height": 64}}]
+    whole = {"crop": {"x": 0, "y": 0, "width": 64, "height": 64}, "frames": {"first": 0, "count": 1}}
+    assert record["inputs"] == [{"sample": "gravel_gray", **whole}]
 
 
 def test_the_queue_tells_the_place(site, until):

@@ -203,7 +203,7 @@ def list_experiments(
     responses=problems(404, 422),
 )
 async def check_experiment(body: ExperimentBody, service: ServiceDep) -> PlanRecord:
-    """Say what this experiment would make and how much memory it would take, or what is wrong with it; nothing is run."""
+    """Say what it would make and how much memory it would take, or what is wrong with it; nothing is run."""
     return PlanRecord(**vars(await run_in_threadpool(lambda: service.check(body.requested()))))
 
 

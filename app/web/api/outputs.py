@@ -34,6 +34,8 @@ def file_name(experiment: Experiment, output: str, suffix: str) -> str:
     """Name a file so that it still says what it is in a folder of downloads."""
     size = f"{experiment.parameters.get('width')}x{experiment.parameters.get('height')}"
     seed = experiment.parameters.get("seed")
+    frames = experiment.parameters.get("frames")
+    size += f"x{frames}" if frames else ""
     return f"{experiment.method}-{size}-seed{seed}-{experiment.id[:6]}-{output.removeprefix('.')}{suffix}"
 
 
@@ -59,7 +61,8 @@ async def experiment_output(
     request: Request,
     service: ServiceDep,
     format: Annotated[
-        Literal["png", "jpeg", "webp", "tiff"] | None, Query(description="Default: as it is stored.")
+        Literal["png", "jpeg", "webp", "tiff", "webm", "mp4"] | None,
+        Query(description="Default: as it is stored. Of a video: webm or mp4."),
     ] = None,
     depth: Annotated[
         Literal["8", "16"] | None,
@@ -73,10 +76,10 @@ async def experiment_output(
     media_type, tag = output.media_type, output.digest
     cache = FOREVER if experiment.listed else FOREVER_FOR_ME
     if format is not None or depth is not None:
-        tag = f"{tag}-{format or 'png'}{depth or ''}"
+        tag = f"{tag}-{format or ''}{depth or ''}"
         if matches(request, tag):
             return not_modified(tag, cache)
-        path, media_type = await service.converted(experiment_id, name, format or "png", DEPTHS.get(depth))
+        path, media_type = await service.converted(experiment_id, name, format, DEPTHS.get(depth))
     return file_response(
         request,
         path,

@@ -108,11 +108,12 @@ async def sample_image(
             ge=1, le=1_000_000, description="Bounds its longer side in pixels, rounded up to 256, 512, 1024 or 2048."
         ),
     ] = None,
+    frame: Annotated[int, Query(ge=0, le=1_000_000, description="Of a video: which frame, from 0.")] = 0,
 ) -> Response:
-    """Upright and in sRGB; at its own size if none is asked for."""
+    """Upright and in sRGB; at its own size if none is asked for. Of a video it is one frame."""
     sample = await run_in_threadpool(service.sample, sample_id)
-    path, media_type = await in_upload_thread(request, service.rendition, sample_id, size)
-    tag = f"{sample.digest}-{path.stat().st_size}"
+    path, media_type = await in_upload_thread(request, service.rendition, sample_id, size, frame)
+    tag = f"{sample.digest}-{frame}-{path.stat().st_size}"
     return file_response(
         request, path, media_type, tag=tag, filename=f"{sample_id}{SUFFIXES[media_type]}", cache=FOREVER
     )

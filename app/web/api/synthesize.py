@@ -1,15 +1,17 @@
-"""``POST /api/v1/synthesize``: photographs in, their texture out, nothing kept."""
+"""``POST /api/v1/synthesize``: photographs or clips in, their texture out, nothing kept."""
 
 import asyncio
+from collections.abc import Callable, Sequence
 from itertools import pairwise
-from typing import Any, Literal, cast
+from typing import Any, Literal, TypeVar, cast
 
 from fastapi import APIRouter, Request
 from starlette.requests import ClientDisconnect
 from starlette.responses import Response
 
 from app.errors import InvalidInputError
-from app.images.crop import Rectangle
+from app.experiments.outputs import AnyFormat
+from app.images.crop import Frames, Rectangle
 from app.methods.registry import METHODS
 from app.web.api.records import API
 from app.web.deps import ServiceDep
@@ -19,12 +21,22 @@ from app.web.uploads import Form, receive_form
 
 router = APIRouter(prefix=API, tags=["experiments"])
 
-Format = Literal["png", "jpeg", "webp", "tiff"]
-FORMATS: dict[str, Format] = {"image/png": "png", "image/jpeg": "jpeg", "image/webp": "webp", "image/tiff": "tiff"}
+STILLS: dict[str, AnyFormat] = {
+    "image/png": "png",
+    "image/jpeg": "jpeg",
+    "image/webp": "webp",
+    "image/tiff": "tiff",
+}
+FILMS: dict[str, AnyFormat] = {"video/webm": "webm", "video/mp4": "mp4"}
+FORMATS = STILLS | FILMS
 _DEPTHS: dict[str, Literal[8, 16]] = {"8": 8, "16": 16}
 
 FILES = ("file", "file-2", "file-3", "file-4")
 CROPS = ("crop", "crop-2", "crop-3", "crop-4")
+TIMES = ("time", "time-2", "time-3", "time-4")
+
+
+_Part = TypeVar("_Part", Rectangle, Frames)
 
 
 def _numbered(number: int, what: str) -> str:
@@ -40,7 +52,11 @@ _FORM: dict[str, Any] = {
             name: {
                 "type": "string",
                 "contentMediaType": "application/octet-stream",
-                "description": _numbered(number, "PNG, JPEG, WebP or TIFF, 8 or 16 bits, grey or colour."),
+                "description": _numbered(
+                    number,
+                    "PNG, JPEG, WebP or TIFF, 8 or 16 bits, grey or colour; or a video: MP4, WebM, GIF, animated WebP "
+                    "or APNG.",
+                ),
             }
             for number, name in enumerate(FILES, 1)
         },
@@ -55,10 +71,23 @@ _FORM: dict[str, Any] = {
             }
             for number, name in enumerate(CROPS, 1)
         },
+        **{
+            name: {
+                "type": "string",
+                "pattern": r"^\d{1,6},\d{1,6}$",
+                "description": _numbered(
+                    number,
+                    "`first,count`: a range of a video's frames; default: all of them where the method takes a video, "
+                    "else the first.",
+                ),
+                "examples": ["0,48"],
+            }
+            for number, name in enumerate(TIMES, 1)
+        },
         "format": {
             "type": "string",
             "enum": list(FORMATS.values()),
-            "description": "Of the answer; default: what `Accept` prefers, else PNG.",
+            "description": "Of the answer; default: what `Accept` prefers, else PNG, and WebM of a video.",
         },
         "depth": {"type": "string", "enum": list(_DEPTHS), "description": "Bits per channel, of PNG and TIFF."},
         **form_parameters(),
@@ -105,7 +134,7 @@ def _wanted(request: Request, form: Form) -> dict[str, Any]:
     """Read the form as the service's arguments; what is left empty counts as left out."""
     fields = {name: value.strip() for name, value in form.fields.items() if value.strip()}
     if form.file is None:
-        raise InvalidInputError("Send a picture in the form's field 'file'.", "file")
+        raise InvalidInputError("Send a picture or a clip in the form's field 'file'.", "file")
     for missing, given in pairwise(FILES):
         if given in form.files and missing not in form.files:
             raise InvalidInputError(f"The form has a file in '{given}' and none in '{missing}'.", missing)
@@ -114,9 +143,8 @@ def _wanted(request: Request, form: Form) -> dict[str, Any]:
         raise InvalidInputError(
             f"Name a method in the field 'method'. The methods are: {', '.join(METHODS)}.", "method"
         )
-    crops = [_crop(name, fields.pop(name, None)) for name in CROPS]
-    while crops and crops[-1] is None:
-        crops.pop()
+    crops = _parts(Rectangle.parse, CROPS, fields)
+    times = _parts(Frames.parse, TIMES, fields)
     file_format = fields.pop("format", None)
     if file_format is not None and file_format not in FORMATS.values():
         raise InvalidInputError(f"The format is one of: {', '.join(FORMATS.values())}.", "format")
@@ -127,38 +155,50 @@ def _wanted(request: Request, form: Form) -> dict[str, Any]:
         "uploads": [form.files[name] for name in FILES if name in form.files],
         "method": method,
         "crops": crops,
+        "frames": times,
         "parameters": fields,
-        "file_format": file_format or preferred_format(request.headers.get("accept", "")),
+        "file_format": file_format
+        or preferred_format(request.headers.get("accept", ""), moving=METHODS[method].moving),
         "depth": None if depth is None else _DEPTHS[depth],
     }
 
 
-def preferred_format(accept: str) -> Format:
-    """Choose the format that an ``Accept`` header likes best; PNG if it likes none or several as much.
+def preferred_format(accept: str, *, moving: bool) -> AnyFormat:
+    """Choose the format that an ``Accept`` header likes best; PNG, or WebM, if it likes none or several as much.
 
     Examples
     --------
-    >>> preferred_format("image/webp,image/png;q=0.8"), preferred_format("image/*"), preferred_format("text/html")
-    ('webp', 'png', 'png')
+    >>> [preferred_format(accept, moving=False) for accept in ("image/webp,image/png;q=0.8", "image/*", "video/mp4")]
+    ['webp', 'png', 'png']
+    >>> [preferred_format(accept, moving=True) for accept in ("video/mp4", "image/webp,*/*")]
+    ['mp4', 'webm']
     """
-    likings: dict[Format, float] = {}
+    formats, usual = (FILMS, FILMS["video/webm"]) if moving else (STILLS, STILLS["image/png"])
+    likings: dict[AnyFormat, float] = {}
     for part in accept.lower().split(","):
         media, *options = (piece.strip() for piece in part.split(";"))
-        if media in FORMATS:
+        if media in formats:
             quality = next((option[2:] for option in options if option.startswith("q=")), "1")
             try:
-                likings[FORMATS[media]] = float(quality)
+                likings[formats[media]] = float(quality)
             except ValueError:
                 continue
     best = max(likings.values(), default=0.0)
-    return "png" if best <= 0 or likings.get("png") == best else next(name for name in likings if likings[name] == best)
+    return usual if best <= 0 or likings.get(usual) == best else next(name for name in likings if likings[name] == best)
 
 
-def _crop(name: str, text: str | None) -> Rectangle | None:
-    try:
-        return None if text is None else Rectangle.parse(text)
-    except InvalidInputError as error:
-        raise InvalidInputError(error.message, name) from None
+def _parts(parse: Callable[[str], _Part], names: Sequence[str], fields: dict[str, str]) -> list[_Part | None]:
+    """Read the fields of these names, and take them out; None for one that is left out, none at the end."""
+    parts: list[_Part | None] = []
+    for name in names:
+        text = fields.pop(name, None)
+        try:
+            parts.append(None if text is None else parse(text))
+        except InvalidInputError as error:
+            raise InvalidInputError(error.message, name) from None
+    while parts and parts[-1] is None:
+        parts.pop()
+    return parts
 
 
 def _form_field(field: str | None) -> str | None:
@@ -166,13 +206,14 @@ def _form_field(field: str | None) -> str | None:
 
     Examples
     --------
-    >>> [_form_field(field) for field in ("parameters.alpha", "inputs.0.crop", "inputs.2.crop", "inputs.1", "inputs")]
-    ['alpha', 'crop', 'crop-3', 'file-2', 'file']
+    >>> fields = ("parameters.alpha", "inputs.0.crop", "inputs.2.crop", "inputs.1.frames", "inputs.1", "inputs")
+    >>> [_form_field(field) for field in fields]
+    ['alpha', 'crop', 'crop-3', 'time-2', 'file-2', 'file']
     """
     if field is None or not field.startswith("inputs"):
         return field and field.removeprefix("parameters.")
     _, index, part, *_ = [*field.split("."), "0", ""]
-    names = CROPS if part == "crop" else FILES
+    names = {"crop": CROPS, "frames": TIMES}.get(part, FILES)
     return names[int(index)] if int(index) < len(names) else "method"
 
 
