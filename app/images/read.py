@@ -47,7 +47,7 @@ def read_crop(path: Path, rectangle: Rectangle) -> NDArray[np.float32]:
     InvalidInputError
         If the rectangle reaches outside the picture or holds pixels that are not opaque.
     """
-    colour, alpha = _cut(path, rectangle)
+    colour, alpha = cut(path, rectangle)
     if alpha is not None and not is_opaque(alpha):
         raise InvalidInputError(
             f"The crop {rectangle} holds transparent pixels, which have no colour to learn from: "
@@ -59,11 +59,18 @@ def read_crop(path: Path, rectangle: Rectangle) -> NDArray[np.float32]:
 
 def has_transparency(path: Path, rectangle: Rectangle) -> bool:
     """Whether a rectangle of a stored picture holds a pixel that is not opaque."""
-    alpha = _cut(path, rectangle)[1]
+    alpha = cut(path, rectangle)[1]
     return alpha is not None and not is_opaque(alpha)
 
 
-def _cut(path: Path, rectangle: Rectangle) -> tuple[Pixels, Pixels | None]:
+def cut(path: Path, rectangle: Rectangle) -> tuple[Pixels, Pixels | None]:
+    """Cut a rectangle out of a stored picture, as it is: its colours (H, W, C) and its alpha (H, W), if it has any.
+
+    Raises
+    ------
+    InvalidInputError
+        If the rectangle reaches outside the picture.
+    """
     with path.open("rb") as file:
         start = file.read(BEFORE_TABLE)
         width, height, depth, colour, *_ = HEADER.unpack_from(start, len(SIGNATURE) + 8)

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.images.crop import Frames, Rectangle
-from app.images.read import has_transparency, read_crop
+from app.images.png import Pixels
+from app.images.read import cut, has_transparency, read_crop
 
 
 def place(crop: Rectangle, frame: int, height: int) -> Rectangle:
@@ -51,6 +52,12 @@ def read_frames(path: Path, crop: Rectangle, frames: Frames, height: int) -> NDA
     for index in range(1, frames.count):
         film[index] = read_crop(path, place(crop, frames.first + index, height))
     return film
+
+
+def read_frame(path: Path, frame: int, width: int, height: int) -> Pixels:
+    """Cut a whole frame out of a strip: (H, W, C), with its alpha as the last channel where the strip has one."""
+    colour, alpha = cut(path, place(Rectangle(0, 0, width, height), frame, height))
+    return colour if alpha is None else np.dstack([colour, alpha])
 
 
 def frames_have_transparency(path: Path, crop: Rectangle, frames: Frames, height: int) -> bool:

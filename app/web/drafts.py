@@ -10,7 +10,7 @@ from app.experiments.submission import NewExperiment, NewInput
 from app.methods.fields import fields
 from app.methods.model import Method, Size
 from app.methods.registry import METHODS, method
-from app.web.forms import SHARED, form_name, own_fields, parse
+from app.web.forms import SHARED, form_name, parse, shared
 from app.web.inputs import Choices, input_query, opened_inputs, prefix, read_inputs, typed_query
 
 SIZES = {
@@ -42,31 +42,40 @@ def opened(sample: Sample, choices: Choices, query: Mapping[str, str]) -> Draft:
     query : mapping
         ``method``, ``size``, the method's parameters by their own names, and the inputs (see `opened_inputs`).
     """
-    values = {"method": query.get("method", "")}
-    if values["method"] not in METHODS:
-        values["method"] = next(iter(METHODS))
-    values |= opened_inputs(sample, choices, query)
+    chosen = METHODS.get(query.get("method", "")) or _suitable(sample)
+    values = {"method": chosen.name, **opened_inputs(sample, choices, query)}
     for declared in METHODS.values():
-        chosen = declared.name == values["method"]
         for entry in fields(declared.params):
-            said = query.get(entry.name) if chosen or entry.name in SHARED else None
-            values[form_name(declared, entry.name)] = entry.default if said is None else said
+            said = query.get(entry.name) if declared is chosen or entry.name in shared(chosen) else None
+            if declared is chosen or form_name(declared, entry.name) not in values:
+                values[form_name(declared, entry.name)] = entry.default if said is None else said
     sized = values["width"] or values["height"]
     size = query.get("size", "free" if sized else "1")
     values["size"] = size if size in SIZES else "1"
     return Draft(values)
 
 
+def _suitable(sample: Sample) -> Method:
+    """Choose the method that a page starts with: of a clip the first moving one."""
+    methods = list(METHODS.values())
+    return next((entry for entry in methods if sample.moving and entry.inputs[0].moving), methods[0])
+
+
 def address(experiment: Experiment) -> dict[str, str]:
     """Write an experiment as the query that opens its sample's form with its values; the opposite of `opened`."""
-    query = {"method": experiment.method, **input_query(experiment)}
+    used = method(experiment.method)
+    query = {"method": used.name, **input_query(experiment)}
+    defaults = {entry.name: entry.default for entry in fields(used.params)}
     for name, value in experiment.parameters.items():
-        if value is not None and value is not False:
-            query[name] = "on" if value is True else str(value)
+        said = ("on" if value else "") if isinstance(value, bool) else str(value)
+        if value is not None and not said == defaults[name] == "":
+            query[name] = said
     sizes = [Size(source.crop.width, source.crop.height, 3) for source in experiment.inputs]
     asked = (experiment.parameters.get("width"), experiment.parameters.get("height"))
-    if asked == method(experiment.method).size(sizes):
+    if asked == used.size(sizes):
         del query["width"], query["height"]
+    if used.moving and experiment.parameters.get("frames") == max(source.frames.count for source in experiment.inputs):
+        del query["frames"]
     return query
 
 
@@ -79,7 +88,9 @@ def typed(values: Mapping[str, str]) -> dict[str, str]:
     for name in SHARED if size == "free" else ("seed",):
         if value := values.get(name, "").strip():
             query[name] = value
-    for entry in own_fields(chosen):
+    for entry in fields(chosen.params):
+        if entry.name in SHARED:
+            continue
         value = values.get(form_name(chosen, entry.name), "").strip()
         if value != entry.default:
             query[entry.name] = value
@@ -88,7 +99,7 @@ def typed(values: Mapping[str, str]) -> dict[str, str]:
 
 def form_url(experiment: Experiment) -> str:
     """The form of the first sample, filled in as the experiment says."""
-    return f"/samples/{experiment.inputs[0].sample}?{urlencode(address(experiment), safe=',:')}"
+    return f"/samples/{experiment.inputs[0].sample}?{urlencode(address(experiment), safe=',:@')}"
 
 
 @dataclass(frozen=True)
@@ -126,7 +137,8 @@ def refused(read: Sent, chosen: Method, error: AppError) -> Draft:
     dotted = error.field if isinstance(error, InvalidInputError) and error.field else ""
     part, *rest = dotted.split(".")
     if part == "inputs" and rest:
-        name = f"{prefix(read.numbers[int(rest[0])])}{rest[1] if len(rest) > 1 else 'crop'}"
+        part = rest[1] if len(rest) > 1 else "crop"
+        name = f"{prefix(read.numbers[int(rest[0])])}{'time' if part == 'frames' else part}"
     elif part == "parameters" and rest:
         name = form_name(chosen, ".".join(rest))
     else:

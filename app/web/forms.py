@@ -7,19 +7,25 @@ from typing import Any
 from pydantic import ValidationError
 
 from app.methods.fields import FormField, fields, requirement
-from app.methods.model import Method, StillParams
+from app.methods.model import Method, MovingParams, StillParams
 
 SHARED = tuple(StillParams.model_fields)  # width, height and seed: asked once for all methods
+MOVING = tuple(name for name in MovingParams.model_fields if name not in SHARED)  # and these once for moving ones
+
+
+def shared(method: Method) -> tuple[str, ...]:
+    """Name the parameters of a method that are asked once for it and others."""
+    return SHARED + MOVING if issubclass(method.params, MovingParams) else SHARED
 
 
 def own_fields(method: Method) -> tuple[FormField, ...]:
-    """List the fields of a method beside those that every method has."""
-    return tuple(entry for entry in fields(method.params) if entry.name not in SHARED)
+    """List the fields of a method beside those that it shares with others."""
+    return tuple(entry for entry in fields(method.params) if entry.name not in shared(method))
 
 
 def form_name(method: Method, name: str) -> str:
     """Name a parameter as the form does: ``rpn.alpha``, but ``seed``, which is asked once for all methods."""
-    return name if name in SHARED else f"{method.name}.{name}"
+    return name if name in shared(method) else f"{method.name}.{name}"
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from app.errors import InvalidInputError, NotFoundError
 from app.experiments.model import Experiment, Sample
 from app.experiments.submission import NewInput
-from app.images.crop import Rectangle
-from app.methods.model import Method
+from app.images.crop import Frames, Rectangle
+from app.methods.model import Method, Slot
 from app.methods.registry import METHODS
 from app.samples import BundledSample
 
@@ -17,6 +17,8 @@ SIDES = ("x", "y", "width", "height")
 ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
 FOUR_NUMBERS = "A crop is four whole numbers: x, y, width and height in pixels."
 OR_NONE = " Left empty, all four of them, it is a region that suits."
+TWO_NUMBERS = "A time range is two whole numbers: the first frame, counted from 0, and how many. Left empty: all."
+ONE_NUMBER = "The frame is a whole number: the first one has the number 0."
 
 
 @dataclass(frozen=True)
@@ -49,6 +51,11 @@ def most(method: Method) -> int:
     return len(method.inputs) + method.more
 
 
+def slot(method: Method, number: int) -> Slot:
+    """What a method says of its input of this number; those beyond its list are like the last one."""
+    return method.inputs[min(number, len(method.inputs)) - 1]
+
+
 def further() -> range:
     """The numbers of the inputs, from 2 on, that some method takes."""
     return range(2, max(most(method) for method in METHODS.values()) + 1)
@@ -75,47 +82,85 @@ def crop_names(number: int) -> tuple[str, ...]:
     return tuple(f"{prefix(number)}crop.{side}" for side in SIDES)
 
 
-def opened_inputs(sample: Sample, choices: Choices, query: Mapping[str, str]) -> dict[str, str]:
-    """Fill the inputs' fields as a page's address says: ``crop=x,y,w,h`` and ``second=id:x,y,w,h``.
+def time_names(number: int) -> tuple[str, str]:
+    """The form names of the two numbers of an input's time range.
 
-    What an address has wrong counts as not said.
+    Examples
+    --------
+    >>> time_names(1)
+    ('time.first', 'time.count')
+    """
+    return f"{prefix(number)}time.first", f"{prefix(number)}time.count"
+
+
+def opened_inputs(sample: Sample, choices: Choices, query: Mapping[str, str]) -> dict[str, str]:
+    """Fill the inputs' fields as a page's address says.
+
+    It says ``crop=x,y,w,h`` and ``time=first,count``, and of further inputs ``second=id:x,y,w,h@first,count``. What it
+    has wrong counts as not said.
     """
     crop = choices.start(sample)
     with suppress(InvalidInputError):
         crop = Rectangle.parse(query["crop"]).within(sample.width, sample.height) if "crop" in query else crop
     values = dict(zip(crop_names(1), str(crop).split(","), strict=True))
+    values |= _opened_time(1, sample, query.get("time", ""))
     for number in further():
-        name, _, said = query.get(ORDINALS[number - 1], "").partition(":")
-        numbers = [""] * 4  # left empty: the crop to start with
+        said, _, time = query.get(ORDINALS[number - 1], "").partition("@")
+        name, _, corners = said.partition(":")
+        numbers, found = [""] * 4, None  # left empty: the crop to start with
         try:
             found = choices.find(name)
             with suppress(InvalidInputError):
-                numbers = str(Rectangle.parse(said).within(found.width, found.height)).split(",")
+                numbers = str(Rectangle.parse(corners).within(found.width, found.height)).split(",")
         except NotFoundError:
             name = "" if optional(number) else choices.other(sample, number)
         values[f"{prefix(number)}sample"] = name
         values |= dict(zip(crop_names(number), numbers, strict=True))
+        values |= _opened_time(number, found, time)
     return values
+
+
+def _opened_time(number: int, sample: Sample | None, said: str) -> dict[str, str]:
+    first, _, count = said.partition(",")
+    try:
+        if sample is None:
+            raise ValueError
+        _range(sample, first, count)
+    except (ValueError, InvalidInputError):
+        first = count = ""
+    # One frame is what still methods take, and no range that a moving one could start from.
+    return dict(zip(time_names(number), (first, "" if count == "1" else count), strict=True))
 
 
 def input_query(experiment: Experiment) -> dict[str, str]:
     """Write an experiment's inputs as the query that opens the form with them; the opposite of `opened_inputs`."""
-    first, *others = experiment.inputs
-    said = {ORDINALS[index]: f"{other.sample}:{other.crop}" for index, other in enumerate(others, 1)}
-    return {"crop": str(first.crop), **said}
+    said = {}
+    for index, source in enumerate(experiment.inputs):
+        time = "" if source.frames == Frames() else str(source.frames)
+        if index == 0:
+            said |= {"crop": str(source.crop)} | ({"time": time} if time else {})
+        else:
+            said[ORDINALS[index]] = f"{source.sample}:{source.crop}" + (f"@{time}" if time else "")
+    return said
 
 
 def typed_query(values: Mapping[str, str], method: Method) -> dict[str, str]:
     """Write the inputs of a form that is not sent off yet in the same way."""
     query = {}
     for number in range(1, most(method) + 1):
-        crop = ",".join(values.get(name, "").strip() for name in crop_names(number))
+        crop, time = (_typed(values, names) for names in (crop_names(number), time_names(number)))
         sample = values.get(f"{prefix(number)}sample", "")
         if number == 1:
             query["crop"] = crop
+            query |= {"time": time} if time else {}
         elif sample:
-            query[ORDINALS[number - 1]] = f"{sample}:{crop}" if crop.strip(",") else sample
+            query[ORDINALS[number - 1]] = sample + (f":{crop}" if crop else "") + (f"@{time}" if time else "")
     return query
+
+
+def _typed(values: Mapping[str, str], names: tuple[str, ...]) -> str:
+    texts = [values.get(name, "").strip() for name in names]
+    return ",".join(texts) if any(texts) else ""
 
 
 def read_inputs(
@@ -123,7 +168,8 @@ def read_inputs(
 ) -> dict[int, NewInput]:
     """Read the inputs that a method takes out of a submitted form, by number; what is wrong goes into ``errors``.
 
-    An optional one without a sample is left out; a further one's crop that is left empty is the one to start with.
+    An optional one without a sample is left out; a further one's crop that is left empty is the one to start with. Of
+    a clip a still input takes the first frame of the time range.
     """
     read = {}
     for number in range(1, most(method) + 1):
@@ -135,8 +181,9 @@ def read_inputs(
         numbers = [values.get(name, "").strip() for name in crop_names(number)]
         empty = number > 1 and not any(numbers)
         crop = choices.start(found) if empty else _crop(found, numbers, f"{prefix(number)}crop", errors)
+        frames = _frames(found, slot(method, number), number, values, errors)
         if crop is not None:
-            read[number] = NewInput(found.id, crop)
+            read[number] = NewInput(found.id, crop, frames)
     return read
 
 
@@ -164,3 +211,24 @@ def _crop(sample: Sample, numbers: list[str], field: str, errors: dict[str, str]
     except ValueError:
         errors[field] = FOUR_NUMBERS + (OR_NONE if field != "crop" else "")
     return None
+
+
+def _frames(
+    sample: Sample, wanted: Slot, number: int, values: Mapping[str, str], errors: dict[str, str]
+) -> Frames | None:
+    if not sample.moving:
+        return None
+    first, count = (values.get(name, "").strip() for name in time_names(number))
+    try:
+        return _range(sample, first, count if wanted.moving else "1")
+    except InvalidInputError as error:
+        errors[f"{prefix(number)}time"] = error.message
+    except ValueError:
+        errors[f"{prefix(number)}time"] = TWO_NUMBERS if wanted.moving else ONE_NUMBER
+    return None
+
+
+def _range(sample: Sample, first: str, count: str) -> Frames:
+    """Read a time range; left empty it begins with the first frame, and ends with the last."""
+    begin = int(first or 0)
+    return Frames(begin, int(count or sample.frames - begin)).within(sample.frames)

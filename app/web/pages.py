@@ -1,11 +1,12 @@
 """Home, sample, archive and error pages; they work without JavaScript, the modules in `static/js` make them better."""
 
+from dataclasses import asdict
 from urllib.parse import urlencode
 
 from fastapi import APIRouter, Request
 from fastapi.responses import RedirectResponse
 from starlette.concurrency import run_in_threadpool
-from starlette.responses import Response
+from starlette.responses import JSONResponse, Response
 
 from app.errors import AppError, InvalidInputError
 from app.experiments.model import Sample
@@ -42,11 +43,12 @@ WORDS = {
     409: "It is too late for that",
     410: "This was deleted",
     413: "This is too large",
-    415: "This is not a photograph",
+    415: "This is neither a photograph nor a clip",
     422: "This does not fit",
     500: "Something went wrong on our side",
     503: "All hands are busy",
 }
+NOTHING_CHOSEN = "Choose a photograph or a clip first: a PNG, JPEG, WebP, TIFF, MP4, WebM, GIF or APNG file."
 SEE_OTHER = 303  # the answer to a form that was taken: go and look, and do not send it again on reload
 
 router = APIRouter(include_in_schema=False)
@@ -83,7 +85,7 @@ async def upload(request: Request, service: ServiceDep, settings: SettingsDep, t
     try:
         async with receive_form(request) as form:
             if form.file is None:
-                raise InvalidInputError("Choose a photograph first: a PNG, JPEG, WebP or TIFF file.", "file")
+                raise InvalidInputError(NOTHING_CHOSEN, "file")
             sample = await in_upload_thread(request, service.add_sample, form.file, owner)
     except AppError as error:
         return await run_in_threadpool(_home, request, service, settings, error.message, status_of(error))
@@ -129,8 +131,7 @@ async def submit(request: Request, service: ServiceDep, settings: SettingsDep, t
     owner = token or new_token()
     names = {f"{prefix(number)}file": f"{prefix(number)}sample" for number in further()}
     if not request.headers.get("content-type", "").startswith("multipart/form-data"):
-        values = {name: value for name, value in (await request.form()).items() if isinstance(value, str)}
-        return await run_in_threadpool(_submit, request, service, settings, owner, values, {})
+        return await run_in_threadpool(_submit, request, service, settings, owner, await _texts(request), {})
     async with receive_form(request, tuple(names)) as form:
         values, errors = dict(form.fields), {}
         for name, path in form.files.items():
@@ -139,6 +140,27 @@ async def submit(request: Request, service: ServiceDep, settings: SettingsDep, t
             except AppError as error:
                 errors[names[name]] = error.message
         return await run_in_threadpool(_submit, request, service, settings, owner, values, errors)
+
+
+async def _texts(request: Request) -> dict[str, str]:
+    return {name: value for name, value in (await request.form()).items() if isinstance(value, str)}
+
+
+@router.post("/experiments/check")
+async def check(request: Request, service: ServiceDep, settings: SettingsDep) -> Response:
+    """Say what is wrong with a form, or what it would make; nothing is run. The page asks while it is filled in."""
+    return await run_in_threadpool(_check, service, settings, await _texts(request))
+
+
+def _check(service: Service, settings: Settings, values: dict[str, str]) -> Response:
+    sample = service.sample(values.get("sample", ""))
+    read = sent(sample, _choices(service, settings), values, listed=True)
+    if read.request is None:
+        return JSONResponse({"errors": read.draft.errors})
+    try:
+        return JSONResponse({"errors": {}, "plan": asdict(service.check(read.request))})
+    except AppError as error:
+        return JSONResponse({"errors": refused(read, method(read.request.method), error).errors})
 
 
 def _submit(
@@ -154,7 +176,7 @@ def _submit(
     if errors:
         return _sample(request, settings, sample, choices, Draft(values, errors), 422)
     if values.get("show"):
-        query = urlencode(typed(values), safe=",:")
+        query = urlencode(typed(values), safe=",:@")
         return RedirectResponse(f"/samples/{sample.id}?{query}", SEE_OTHER)
     read = sent(sample, choices, values, listed=not values.get("unlisted"))
     if read.request is None:

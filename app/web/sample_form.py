@@ -3,17 +3,18 @@
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
+from urllib.parse import urlencode
 
 from app.errors import NotFoundError
 from app.experiments.model import Sample
 from app.images.crop import Rectangle
 from app.methods.fields import FormField, fields
-from app.methods.model import Method, StillParams, first_size
+from app.methods.model import Method, MovingParams, StillParams, first_size
 from app.methods.registry import METHODS
 from app.samples import BundledSample
 from app.web.drafts import SIZES, Draft
-from app.web.forms import form_name, own_fields
-from app.web.inputs import ORDINALS, SIDES, Choices, further, most, optional, prefix
+from app.web.forms import MOVING, form_name, own_fields
+from app.web.inputs import ORDINALS, SIDES, Choices, further, most, optional, prefix, slot
 
 
 @dataclass(frozen=True)
@@ -24,8 +25,14 @@ class Offer:
     title: str
     width: int
     height: int
+    frames: int
+    rate: float
     crop: Rectangle
     entry: BundledSample | None
+
+    @property
+    def moving(self) -> bool:
+        return self.frames > 1
 
 
 @dataclass(frozen=True)
@@ -48,16 +55,22 @@ class InputForm:
 class MethodForm:
     """One method of the form.
 
-    ``takes`` are the numbers of its inputs; ``follows`` says that its texture is as large as the first crop unless
-    asked otherwise, and not as the method finds right; ``open`` that something under "advanced" is not as usual.
+    ``takes`` are the numbers of its inputs, ``moves`` those of them that are videos, and ``named`` their titles where
+    each has one of its own. ``follows`` says that its texture is as large as the first crop unless asked otherwise, and
+    not as the method finds right; ``open`` that something under "advanced" is not as usual. ``clips`` are bundled clips
+    to open it with instead, by title, where the page's sample is a still picture and that will not do.
     """
 
     method: Method
     plain: tuple[FormField, ...]
     advanced: tuple[FormField, ...]
     takes: range
+    moves: tuple[int, ...]
+    named: tuple[str, ...]
     follows: bool
     open: bool
+    lacks_clip: bool
+    clips: dict[str, str]
 
 
 def form_context(sample: Sample, choices: Choices, draft: Draft) -> dict[str, Any]:
@@ -69,19 +82,31 @@ def form_context(sample: Sample, choices: Choices, draft: Draft) -> dict[str, An
         "draft": draft,
         "inputs": inputs,
         "sides": SIDES,
-        "methods": [_method(method, draft) for method in METHODS.values()],
+        "methods": [_method(method, draft, sample, choices) for method in METHODS.values()],
         "shared": fields(StillParams),
+        "moving": [entry for entry in fields(MovingParams) if entry.name in MOVING],
         "sizes": SIZES,
         "targets": {
             "method": f"method-{next(iter(METHODS))}",
+            "sample": f"method-{draft.values.get('method', '')}",
             **{f"{entry.name}crop": f"{entry.id}crop-x" for entry in inputs},
+            **{f"{entry.name}time": f"{entry.id}time-first" for entry in inputs},
         },
     }
 
 
 def _offer(entry: Sample, choices: Choices, page: Sample) -> Offer:
-    title = entry.title or ("This photograph" if entry.id == page.id else "Your photograph")
-    return Offer(entry.id, title, entry.width, entry.height, choices.start(entry), choices.entries.get(entry.id))
+    kind = "clip" if entry.moving else "photograph"
+    return Offer(
+        entry.id,
+        entry.title or f"{'This' if entry.id == page.id else 'Your'} {kind}",
+        entry.width,
+        entry.height,
+        entry.frames,
+        entry.rate,
+        choices.start(entry),
+        choices.entries.get(entry.id),
+    )
 
 
 def _further(sample: Sample, choices: Choices, draft: Draft, number: int) -> InputForm:
@@ -98,15 +123,29 @@ def _further(sample: Sample, choices: Choices, draft: Draft, number: int) -> Inp
     return InputForm(number, title, prefix(number), f"input-{number}-", optional(number), offers, shown)
 
 
-def _method(method: Method, draft: Draft) -> MethodForm:
+def _method(method: Method, draft: Draft, sample: Sample, choices: Choices) -> MethodForm:
     own = own_fields(method)
     advanced = tuple(entry for entry in own if entry.advanced)
     names = {form_name(method, entry.name): entry.default for entry in advanced}
+    takes = range(1, most(method) + 1)
+    lacks_clip = method.inputs[0].moving and not sample.moving
     return MethodForm(
         method,
         tuple(entry for entry in own if not entry.advanced),
         advanced,
-        range(1, most(method) + 1),
+        takes,
+        tuple(number for number in takes if slot(method, number).moving),
+        tuple(entry.title for entry in method.inputs) if len(takes) > 1 and not method.more else (),
         method.size is first_size,
         any(name in draft.errors or draft.values.get(name, "") != default for name, default in names.items()),
+        lacks_clip,
+        _clips(method, sample, choices) if lacks_clip else {},
     )
+
+
+def _clips(method: Method, sample: Sample, choices: Choices) -> dict[str, str]:
+    """Lead to the form of each bundled clip; where the method takes a still picture besides, with this one as that."""
+    query = {"method": method.name}
+    if still := [number for number in range(2, most(method) + 1) if not slot(method, number).moving]:
+        query[ORDINALS[still[0] - 1]] = sample.id
+    return {clip.title or clip.id: f"/samples/{clip.id}?{urlencode(query)}" for clip in choices.samples if clip.moving}

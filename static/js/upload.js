@@ -1,4 +1,4 @@
-// Home: a photograph can also be dropped anywhere on the page or pasted, and is sent as soon as it is chosen.
+// Home: a photograph or a clip can also be dropped anywhere on the page or pasted, and is sent as soon as it is chosen.
 
 const form = document.querySelector("#upload");
 const input = form.querySelector("#file");
@@ -48,7 +48,7 @@ function send(file) {
   });
   request.upload.addEventListener("load", () => {
     bar.removeAttribute("value");
-    barText.textContent = "Reading the photograph …";
+    barText.textContent = "Reading the file …";
   });
   request.addEventListener("load", ({ target }) => {
     if (target.status === 201) location.assign(`/samples/${JSON.parse(target.responseText).id}`);
@@ -57,7 +57,7 @@ function send(file) {
   request.addEventListener("error", () => fail("The connection broke: look whether you are online, and try again."));
   request.open("POST", form.dataset.api);
   const body = new FormData();
-  body.append("file", file, file.name || "photograph");
+  body.append("file", file, file.name || "upload");
   request.send(body);
 }
 
@@ -75,7 +75,7 @@ choose.addEventListener("click", () => input.click());
 input.addEventListener("change", () => take(input.files));
 form.addEventListener("submit", (event) => {
   event.preventDefault();
-  take(input.files, "Choose a photograph first: a PNG, JPEG, WebP or TIFF file.");
+  take(input.files, "Choose a photograph or a clip first: a PNG, JPEG, WebP, TIFF, MP4, WebM, GIF or APNG file.");
 });
 
 let inside = 0; // dragenter and dragleave come for every element on the way
