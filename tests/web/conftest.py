@@ -54,7 +54,7 @@ class Gate:
 
     def __call__(self, settings: Settings, job: str, progress: Progress) -> None:
         while not self._open.wait(0.01):
-            progress("held", 0.01)
+            progress("held", 0.0)
         run_job(settings, job, progress)
 
     @contextmanager
