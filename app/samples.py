@@ -1,4 +1,4 @@
-"""The photographs, and a few drawings, that come with the service: what each shows, where to crop it, whom to thank."""
+"""Photographs, clips and a few drawings that come with the service: what each shows, where to crop it, whom to thank."""
 
 import json
 from dataclasses import dataclass
@@ -9,18 +9,19 @@ from app.images.crop import Rectangle
 
 CATALOGUE = "catalogue.json"
 
-Kind = Literal["micro-texture", "macro-texture", "structured", "non-stationary", "scene", "drawn"]
+Kind = Literal["micro-texture", "macro-texture", "structured", "non-stationary", "scene", "moving", "drawn"]
 
 
 @dataclass(frozen=True)
 class BundledSample:
-    """One photograph of the catalogue.
+    """One photograph, clip or drawing of the catalogue.
 
     ``kind`` says what the random phase models make of it: they reproduce a ``micro-texture``, lose the objects of a
     ``macro-texture`` and the edges of what is ``structured``, and cannot know of a change across the picture
-    (``non-stationary``); a ``scene`` is to be cropped first; what is ``drawn`` is no photograph, but shows something
-    that none shows. ``crop`` is a homogeneous region to start from. Where the licence asks for it (CC-BY), pages that
-    show the picture name ``credit``, ``licence`` and ``licence_url``.
+    (``non-stationary``); a ``scene`` is to be cropped first; a ``moving`` one is a clip, and its title says how it was
+    made; what is ``drawn`` is no photograph, but shows something that none shows. ``crop`` is a homogeneous region to
+    start from. Where the licence asks for it (CC-BY), pages that show the picture name ``credit``, ``licence`` and
+    ``licence_url``.
     """
 
     path: Path

@@ -1,12 +1,14 @@
-"""The catalogue of the bundled photographs is complete, honest and points at real regions."""
+"""The catalogue of the bundled photographs and clips is complete, honest and points at real regions."""
 
 import json
 import subprocess
 import sys
 from pathlib import Path
 
+import av
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from PIL import Image
 
 from app.samples import CATALOGUE, BundledSample, bundled
@@ -15,19 +17,28 @@ from app.settings import ROOT
 SAMPLES = ROOT / "samples"
 
 
+def film(path: Path) -> NDArray[np.uint8]:
+    """(T, H, W, 3)."""
+    with av.open(str(path)) as container:
+        return np.stack([frame.to_ndarray(format="rgb24") for frame in container.decode(video=0)])
+
+
 @pytest.fixture(scope="module")
 def photographs() -> list[BundledSample]:
     return bundled(SAMPLES)
 
 
 def test_every_photograph_of_the_directory_has_exactly_one_entry(photographs: list[BundledSample]) -> None:
-    files = {path.name for path in SAMPLES.iterdir() if path.suffix in {".png", ".jpg"}}
+    files = {path.name for path in SAMPLES.iterdir() if path.suffix in {".png", ".jpg", ".mp4"}}
     assert {photograph.path.name for photograph in photographs} == files
     assert len({photograph.id for photograph in photographs}) == len(photographs) == len(files)
 
 
 def test_every_suggested_crop_lies_inside_its_photograph(photographs: list[BundledSample]) -> None:
     for photograph in photographs:
+        if photograph.kind == "moving":
+            photograph.crop.within(*film(photograph.path).shape[2:0:-1])
+            continue
         with Image.open(photograph.path) as image:
             photograph.crop.within(*image.size)
 
