@@ -1,4 +1,4 @@
-"""Photographs, clips and a few drawings that come with the service: what each shows, where to crop it, whom to thank."""
+"""What comes with the service: photographs, clips, a few drawings; what each shows, where to crop it, whom to thank."""
 
 import json
 from dataclasses import dataclass

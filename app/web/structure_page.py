@@ -131,7 +131,7 @@ def structure_page(request: Request, service: ServiceDep, settings: SettingsDep)
 
 
 def _photographs(service: Service, settings: Settings) -> list[Measured]:
-    """Those that have come in so far; a scene is no texture and a clip no photograph: they have no place on the scale."""
+    """Those that have come in so far; a scene is no texture, a clip no photograph: neither has a place on the scale."""
     entries = {entry.id: entry for entry in bundled(settings.samples_dir) if entry.kind not in ("scene", "moving")}
     return [
         Measured(sample, entry.title, entry.crop, service.structure(sample.id, entry.crop).delta)
