@@ -1,0 +1,58 @@
+"""Several files of one film, written at once: every encoder works in a thread of its own."""
+
+from collections import deque
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor, wait
+from types import TracebackType
+from typing import Self
+
+from app.images.video.writers import FilmWriter, Frame
+
+WAITING = 2  # frames that wait for an encoder before their maker does
+PATIENCE = 0.1  # seconds between two calls of `progress` while encoders finish
+
+
+class Encoding:
+    """Hands every frame to several writers; leaving it ends their threads and removes what is not finished.
+
+    Parameters
+    ----------
+    writers : sequence of FilmWriter
+        It closes them.
+    """
+
+    def __init__(self, writers: Sequence[FilmWriter]) -> None:
+        self._writers = writers
+        self._threads = [ThreadPoolExecutor(1, f"encode-{writer.path.suffix}") for writer in writers]
+        self._pending: list[deque[Future[None]]] = [deque() for _ in writers]
+
+    def write(self, frame: Frame) -> None:
+        """Queue a frame, (H, W, C) uint8, which the caller does not change any more; waits while queues are full."""
+        for writer, thread, pending in zip(self._writers, self._threads, self._pending, strict=True):
+            if len(pending) > WAITING:
+                pending.popleft().result()
+            pending.append(thread.submit(writer.write, frame))
+
+    def finish(self, progress: Callable[[float], None]) -> None:
+        """Wait until every file is complete; ``progress`` is called now and then with the part, 0–1, that is done."""
+        for writer, thread, pending in zip(self._writers, self._threads, self._pending, strict=True):
+            pending.append(thread.submit(writer.finish))
+        jobs = [job for pending in self._pending for job in pending]
+        unfinished = set(jobs)
+        while unfinished:
+            progress(1 - len(unfinished) / len(jobs))
+            done, unfinished = wait(unfinished, PATIENCE)
+            for job in done:
+                job.result()
+        progress(1.0)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        for thread in self._threads:
+            thread.shutdown(cancel_futures=True)
+        for writer in self._writers:
+            writer.close()

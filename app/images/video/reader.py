@@ -1,0 +1,26 @@
+"""Frames of the films that `app.images.video.writers` has written."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import av
+import numpy as np
+from av.video.reformatter import ColorRange
+from numpy.typing import NDArray
+
+from app.images.video.writers import rows
+
+
+def read_film(path: Path) -> Iterator[NDArray[np.uint8]]:
+    """Frames (H, W, C) uint8, one by one; C is 1 for a WebM film written from one channel, otherwise 3."""
+    with av.open(path) as container:
+        for frame in container.decode(video=0):
+            if frame.format.name == "yuv420p" and frame.color_range == ColorRange.JPEG:
+                yield rows(frame.planes[0])[: frame.height, : frame.width, None].copy()
+            else:
+                yield frame.to_ndarray(format="rgb24").astype(np.uint8, copy=False)
+
+
+def first_frame(path: Path) -> NDArray[np.uint8]:
+    """The first frame, (H, W, C) uint8, decoded alone."""
+    return next(read_film(path))
