@@ -1,11 +1,14 @@
-"""One run without a service: photographs in, one file out."""
+"""One run without a service: photographs or clips in, one file out."""
 
 import os
 import re
+import shutil
+import tempfile
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
+from itertools import islice, zip_longest
 from pathlib import Path
 from typing import Any, Literal
 
@@ -13,12 +16,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.errors import InvalidInputError, NotFoundError
-from app.experiments.model import Experiment, Sample
+from app.experiments.model import Experiment, ExperimentInput, Sample
+from app.experiments.run import TEXTURES
 from app.experiments.submission import Allowed, NewExperiment, NewInput, prepare
 from app.images.convert import Format, convert
-from app.images.crop import Rectangle
+from app.images.crop import Frames, Rectangle
 from app.images.decode import Decoded, Limits, decode
-from app.methods.model import Context, Progress, Source
+from app.methods.model import Context, Film, Method, Picture, Progress, Source
 from app.methods.registry import method as method_named
 from app.settings import Settings
 
@@ -30,16 +34,18 @@ FORMATS: dict[str, Format] = {
     ".tif": "tiff",
     ".tiff": "tiff",
 }
+FILMS = {".webm": "video/webm", ".mp4": "video/mp4"}
 
 
 @dataclass(frozen=True)
 class Request:
-    """What was typed: ``parameters`` and ``crop`` still as text."""
+    """What was typed: ``parameters``, ``crop`` and ``time`` still as text."""
 
     photos: tuple[Path, ...]
     out: Path
     method: str
     crop: tuple[str, ...]
+    time: tuple[str, ...]
     size: str | None
     depth: int
     overwrite: bool
@@ -62,65 +68,82 @@ def run(request: Request, settings: Settings, progress: Progress) -> str:
         If a file can be neither read nor written.
     """
     started = time.perf_counter()
-    chosen, depth = _target(request)
+    method = method_named(request.method)
+    depth = _check_target(request, method)
     photos = {str(path): _read(path, settings) for path in request.photos}
     experiment = _experiment(request, photos, settings)
-    method = method_named(experiment.method)
-    sources = [_source(photos[each.sample], each.crop) for each in experiment.inputs]
+    sources = [
+        _source(photos[each.sample], each, moving=method.slot(index).moving)
+        for index, each in enumerate(experiment.inputs)
+    ]
     params = method.params.model_validate(experiment.parameters)
-    # The first picture is the texture; the steps that the pages show after it are not computed.
-    texture = next(method.run(sources, params, Context(depth, settings.threads, progress)))
-    _write(request.out, convert(texture.data, chosen)[0])
+    with tempfile.TemporaryDirectory() as scratch:
+        context = Context(depth, settings.threads, progress, Path(scratch))
+        # The first pictures are the texture; the steps that the pages show after it are not computed.
+        pictures = list(islice(method.run(sources, params, context), TEXTURES if method.moving else 1))
+        texture = _write(request.out, pictures)
     seconds = time.perf_counter() - started
     size = f"{texture.width} × {texture.height} pixels"
+    if texture.frames > 1:
+        size += f", {texture.frames} frames"
     return f"{request.out}: {size}, {method.name}, seed {params.seed}, {seconds:.2f} s"
 
 
-def _target(request: Request) -> tuple[Format, Literal[8, 16]]:
+def _check_target(request: Request, method: Method) -> Literal[8, 16]:
     if not request.photos:
-        raise InvalidInputError("Name a photograph, and then the file to write.")
-    chosen = FORMATS.get(request.out.suffix.lower())
-    if chosen is None:
+        raise InvalidInputError("Name a photograph, or a clip, and then the file to write.")
+    suffix = request.out.suffix.lower()
+    known = FILMS if method.moving else FORMATS
+    if suffix not in known:
+        what = "a video" if method.moving else "a picture"
         raise InvalidInputError(
-            f"The name of the file to write ends with one of {', '.join(FORMATS)}; got {request.out.name!r}."
+            f"The method {method.name} makes {what}: the name of the file to write ends with one of "
+            f"{', '.join(known)}; got {request.out.name!r}."
         )
     if request.depth not in (8, 16):
         raise InvalidInputError(f"--depth is 8 or 16; got {request.depth}.")
-    if request.depth == 16 and chosen not in ("png", "tiff"):
+    if request.depth == 16 and FORMATS.get(suffix) not in ("png", "tiff"):
         raise InvalidInputError("16 bits per channel fit into PNG and TIFF only: name the file to write .png or .tif.")
     if not request.out.parent.is_dir():
         raise NotFoundError(f"There is no directory {request.out.parent}: make it first.")
     if request.out.exists() and not request.overwrite:
         raise InvalidInputError(f"{request.out} is there already: choose another name, or add --overwrite.")
-    return chosen, 16 if request.depth == 16 else 8
+    return 16 if request.depth == 16 else 8
 
 
 def _read(path: Path, settings: Settings) -> Decoded:
     if not path.is_file():
         raise NotFoundError(f"There is no file {path}.")
-    return decode(path, Limits(settings.max_upload_bytes, settings.max_upload_pixels))
+    limits = Limits(
+        bytes=settings.max_upload_bytes,
+        pixels=settings.max_upload_pixels,
+        film_frames=settings.max_film_frames,
+        film_seconds=settings.max_film_seconds,
+        film_pixels=settings.max_film_pixels,
+    )
+    return decode(path, limits)
 
 
 def _experiment(request: Request, photos: Mapping[str, Decoded], settings: Settings) -> Experiment:
     """Validate what was typed, as the service does."""
-    if len(request.crop) > len(request.photos):
-        raise InvalidInputError(f"There are more crops ({len(request.crop)}) than photographs ({len(request.photos)}).")
+    for given, what in ((request.crop, "crops"), (request.time, "time ranges")):
+        if len(given) > len(request.photos):
+            raise InvalidInputError(f"There are more {what} ({len(given)}) than files ({len(request.photos)}).")
     crops = [Rectangle.parse(text) for text in request.crop]
-    inputs = tuple(
-        NewInput(str(path), crops[index] if index < len(crops) else None) for index, path in enumerate(request.photos)
-    )
+    times = [Frames.parse(text) for text in request.time]
+    inputs = tuple(NewInput(str(path), crop, part) for path, crop, part in zip_longest(request.photos, crops, times))
     parameters = dict(request.parameters)
     if request.size is not None:
         if {"width", "height"} & parameters.keys():
             raise InvalidInputError("Give either --size or --width and --height.")
         first = photos[inputs[0].sample]
-        base = inputs[0].crop or Rectangle(0, 0, first.pixels.shape[1], first.pixels.shape[0])
+        base = inputs[0].crop or Rectangle(0, 0, first.pixels.shape[1], first.height)
         parameters["width"], parameters["height"] = output_size(request.size, base)
     return prepare(
         NewExperiment(request.method, inputs, parameters),
         "",
         sample=lambda name: _as_sample(name, photos[name]),
-        transparent=lambda sample, crop, frames: _holds_transparency(photos[sample.id], crop),
+        transparent=lambda sample, crop, frames: _holds_transparency(photos[sample.id], crop, frames),
         allowed=Allowed.by(settings),
     )
 
@@ -148,35 +171,54 @@ def output_size(text: str, crop: Rectangle) -> tuple[int, int]:
 
 
 def _as_sample(name: str, photo: Decoded) -> Sample:
-    height, width, channels = photo.pixels.shape
+    _, width, channels = photo.pixels.shape
     return Sample(
         id=name,
         digest="",
         width=width,
-        height=height,
+        height=photo.height,
         channels=channels,
         depth=photo.depth,
         transparent=photo.alpha is not None,
         created_at=datetime.now(UTC),
+        frames=photo.frames,
+        media_type=photo.media_type,
+        rate=photo.rate,
     )
 
 
-def _cut(pixels: NDArray[Any], crop: Rectangle) -> NDArray[Any]:
-    return pixels[crop.y : crop.y + crop.height, crop.x : crop.x + crop.width]
+def _cut(strip: NDArray[Any], photo: Decoded, crop: Rectangle, frames: Frames) -> NDArray[Any]:
+    """Cut a crop of some frames, (T, H, W, …), out of the frames of a photograph or clip, one below the other."""
+    film = strip.reshape(photo.frames, photo.height, *strip.shape[1:])
+    rows, columns = slice(crop.y, crop.y + crop.height), slice(crop.x, crop.x + crop.width)
+    return film[frames.first : frames.first + frames.count, rows, columns]
 
 
-def _source(photo: Decoded, crop: Rectangle) -> Source:
-    return Source(_cut(photo.pixels, crop).astype(np.float32), 2**photo.depth - 1)
+def _source(photo: Decoded, item: ExperimentInput, *, moving: bool) -> Source:
+    frames = _cut(photo.pixels, photo, item.crop, item.frames)
+    film = Film(np.ascontiguousarray(frames), photo.rate) if moving else None
+    return Source(frames[0].astype(np.float32), 2**photo.depth - 1, film)
 
 
-def _holds_transparency(photo: Decoded, crop: Rectangle) -> bool:
-    return photo.alpha is not None and bool((_cut(photo.alpha, crop) < 2**photo.depth - 1).any())
+def _holds_transparency(photo: Decoded, crop: Rectangle, frames: Frames) -> bool:
+    if photo.alpha is None:
+        return False
+    return bool((_cut(photo.alpha, photo, crop, frames) < 2**photo.depth - 1).any())
 
 
-def _write(out: Path, data: bytes) -> None:
+def _write(out: Path, pictures: list[Picture]) -> Picture:
+    """Write the picture that is asked for by the file's name; returns it."""
+    suffix = out.suffix.lower()
     unfinished = out.with_name(f".{out.name}.{os.getpid()}")
     try:
-        unfinished.write_bytes(data)
+        if suffix in FILMS:
+            texture = next(picture for picture in pictures if picture.media_type == FILMS[suffix])
+            assert isinstance(texture.data, Path)
+            shutil.copyfile(texture.data, unfinished)
+        else:
+            texture = pictures[0]
+            unfinished.write_bytes(convert(texture.data, FORMATS[suffix])[0])
         unfinished.replace(out)
+        return texture
     finally:
         unfinished.unlink(missing_ok=True)

@@ -19,7 +19,8 @@ _OWN = {
     "files": (
         list[Path],
         typer.Argument(
-            help="The photograph, or as many as the method takes, and then the file to write.", metavar="PHOTO OUT"
+            help="The photograph or clip, or as many as the method takes, and then the file to write.",
+            metavar="PHOTO OUT",
         ),
         inspect.Parameter.empty,
     ),
@@ -33,6 +34,14 @@ _OWN = {
         typer.Option(
             help="Part of the photograph to work from; all of it by default. Once per photograph, in their order.",
             metavar="X,Y,W,H",
+        ),
+        [],
+    ),
+    "time": (
+        list[str],
+        typer.Option(
+            help="Frames of a clip to work from, from 0; all of it by default. Once per file, in their order.",
+            metavar="FIRST,COUNT",
         ),
         [],
     ),

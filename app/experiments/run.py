@@ -111,11 +111,11 @@ def _add_deep_texture(
 def _read(store: ExperimentStore, blobs: BlobStore, experiment: Experiment, progress: Progress) -> list[Source]:
     progress("reading the crop", 0.0)
     sources = []
-    slots = method_named(experiment.method).inputs
+    method = method_named(experiment.method)
     for index, item in enumerate(experiment.inputs):
         sample = store.sample(item.sample)
         path, peak = blobs.path(sample.digest), 65535 if sample.depth == 16 else 255
-        if slots[min(index, len(slots) - 1)].moving:
+        if method.slot(index).moving:
             film = Film(read_frames(path, item.crop, item.frames, sample.height), sample.rate)
             sources.append(Source(film.frames[0].astype(np.float32), peak, film))
         else:

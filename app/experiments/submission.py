@@ -89,8 +89,7 @@ def prepare(
     inputs, sizes = [], []
     for index, wanted_input in enumerate(request.inputs):
         found = sample(wanted_input.sample)
-        slot = method.inputs[min(index, len(method.inputs) - 1)]
-        frames = _frames(wanted_input, found, slot, f"inputs.{index}")
+        frames = _frames(wanted_input, found, method.slot(index), f"inputs.{index}")
         crop = _crop(wanted_input, found, frames, f"inputs.{index}.crop", transparent)
         inputs.append(ExperimentInput(found.id, crop, frames))
         sizes.append(Size(crop.width, crop.height, found.channels, frames.count))

@@ -220,6 +220,10 @@ class Method:
     phase: bool = False
     memory: Callable[[Sequence[Size], Any], int] | None = None
 
+    def slot(self, index: int) -> Slot:
+        """The slot of an input, from 0; further inputs are like the last one."""
+        return self.inputs[min(index, len(self.inputs) - 1)]
+
     @property
     def moving(self) -> bool:
         """Whether it makes videos, of which `MovingParams` are the parameters."""
