@@ -5,9 +5,13 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from app.experiments.meter import measured
 from app.images.crop import Rectangle
 from app.images.read import read_crop
+from app.images.video.reader import first_frame
 from app.methods.model import Picture, Progress, Source
 from app.synthesis.structure import delta_of
 
@@ -29,7 +33,8 @@ def diagnose(sources: Sequence[Source], staged: Sequence[tuple[Picture, Path]], 
     Returns
     -------
     dict
-        ``structure``: the structure index δ of every input and of every texture, in the order of the outputs;
+        ``structure``: the structure index δ of every input and of every texture, in the order of the outputs, of a
+        video that of its first frame;
         ``facts``: what the method found out, each with the name of its output.
     """
     textures = [(picture, path) for picture, path in staged if picture.kind == "texture"]
@@ -41,8 +46,15 @@ def diagnose(sources: Sequence[Source], staged: Sequence[tuple[Picture, Path]], 
         inputs.append(round(delta_of(source.pixels), DIGITS))
     for picture, path in textures:
         progress("structure", 0.92 + 0.06 * (len(inputs) + len(outputs)) / total)
-        outputs.append(
-            round(delta_of(read_crop(path, measured(Rectangle(0, 0, picture.width, picture.height)))), DIGITS)
-        )
+        outputs.append(round(delta_of(_pixels(picture, path)), DIGITS))
     facts = [{"output": picture.name, **asdict(fact)} for picture, _ in staged for fact in picture.facts]
     return {"structure": {"inputs": inputs, "outputs": outputs}, "facts": facts}
+
+
+def _pixels(picture: Picture, path: Path) -> NDArray[np.float32]:
+    """The part of a texture that is measured."""
+    area = measured(Rectangle(0, 0, picture.width, picture.height))
+    if picture.frames == 1:
+        return read_crop(path, area)
+    frame = first_frame(path)[area.y : area.y + area.height, area.x : area.x + area.width]
+    return frame.astype(np.float32)
