@@ -38,6 +38,11 @@ class MovingParams(StillParams):
     """Parameters that every method of moving textures has besides."""
 
     frames: int | None = Field(None, ge=2, title="Frames", description="Frames of the video; default: as the clip.")
+
+
+class SeamlessParams(MovingParams):
+    """Parameters of those whose videos can be with or without a seam; any other's have none."""
+
     loop: bool = Field(
         True,
         title="Loop",
