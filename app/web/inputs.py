@@ -134,7 +134,7 @@ def _opened_time(number: int, sample: Sample | None, said: str) -> dict[str, str
 
 def input_query(experiment: Experiment) -> dict[str, str]:
     """Write an experiment's inputs as the query that opens the form with them; the opposite of `opened_inputs`."""
-    said = {}
+    said: dict[str, str] = {}
     for index, source in enumerate(experiment.inputs):
         time = "" if source.frames == Frames() else str(source.frames)
         if index == 0:

@@ -28,7 +28,7 @@ export class Crop {
     this.readout = root.querySelector("[id$=crop-size]");
     this.scale = 1; // screen pixels per pixel of the original
     this.drag = null;
-    this.build(root.dataset.input === "1" ? "Crop" : `Crop of the ${root.querySelector("legend").textContent.toLowerCase()}`);
+    this.build(root.querySelector("legend"));
     this.listen();
     this.readSize();
     this.follow();
@@ -36,10 +36,12 @@ export class Crop {
     window.addEventListener("resize", () => this.layOut());
   }
 
-  build(name) {
+  build(legend) {
     const shade = element("div", { class: "shade", "aria-hidden": "true" }, this.frame);
     this.dark = element("span", {}, shade);
-    const names = { tabindex: "0", role: "application", "aria-label": `${name}. ${KEYS}` };
+    const keys = element("span", { id: `${legend.id}-keys`, hidden: "" }, this.frame);
+    keys.textContent = `Crop. ${KEYS}`;
+    const names = { tabindex: "0", role: "application", "aria-labelledby": `${legend.id} ${keys.id}` };
     this.box = element("div", { class: "box", ...names }, this.frame);
     for (const edge of EDGES) element("span", { class: "handle", "data-edge": edge }, this.box);
     this.label = element("span", { class: "readout", "aria-hidden": "true" }, this.box);
@@ -55,12 +57,16 @@ export class Crop {
     return wanted.length === 4 ? wanted : [0, 0, this.size.width, this.size.height];
   }
 
-  /** Show another photograph, with the crop to start from. */
-  show({ address, title, width, height, crop }) {
-    const image = this.frame.querySelector("img") ?? document.createElement("img");
-    this.frame.prepend(image);
-    Object.assign(image, { src: address, alt: title, width, height });
+  /** Show another photograph, or a clip if it has an address as such, with the crop to start from. */
+  show({ address, video, title, width, height, crop }) {
+    this.frame.querySelector("img, video")?.remove();
+    const shown = document.createElement(video ? "video" : "img");
+    if (video) Object.assign(shown, { src: video, poster: address, loop: true, muted: true, playsInline: true, ariaLabel: title });
+    else Object.assign(shown, { src: address, alt: title });
+    Object.assign(shown, { width, height });
+    this.frame.prepend(shown);
     Object.assign(this.frame.dataset, { width, height });
+    this.tools.querySelector("button").textContent = video ? "Whole frame" : "Whole photograph";
     this.tools.querySelector("button:last-of-type").dataset.crop = crop;
     const most = { x: width - 1, y: height - 1, width, height };
     for (const side of SIDES) this.fields[side].max = most[side];

@@ -1,9 +1,11 @@
-// The photographs of a sample's page: a crop editor on each, and for further ones what is chosen or uploaded.
+// The inputs of a sample's page: editors of each one's crop and time range, and for further ones what is chosen or uploaded.
 
 import { Crop } from "./crop.js";
+import { TimeRange } from "./time_range.js";
 
 const SMALL = 256; // pixels of a thumbnail's longer side, as on the home page
-const address = (sample, size) => `/api/v1/samples/${encodeURIComponent(sample)}/image?size=${size}`;
+const record = (sample) => `/api/v1/samples/${encodeURIComponent(sample)}`;
+const address = (sample, size) => `${record(sample)}/image?size=${size}`;
 
 let uploads = 0;
 
@@ -17,6 +19,7 @@ class Further {
   constructor(root) {
     this.root = root;
     this.crop = new Crop(root);
+    this.time = new TimeRange(root);
     this.select = root.querySelector("select");
     this.status = root.querySelector(".sending");
     this.shown = this.select.value;
@@ -34,17 +37,19 @@ class Further {
     if (details) this.offerToLeave(details);
   }
 
-  /** Show what is chosen; `kept` says that the crop's numbers are its own already. */
+  /** Show what is chosen; `kept` says that the numbers of crop and time range are its own already. */
   follow(kept = false) {
     const sample = this.select.value;
     if (sample !== this.shown) {
       this.shown = sample;
-      const { width, height, crop, ...thanks } = this.select.selectedOptions[0].dataset;
-      this.thank(thanks);
+      const { width, height, frames, rate, crop, ...thanks } = this.select.selectedOptions[0].dataset;
+      const video = Number(frames) > 1 ? `${record(sample)}/video` : "";
+      this.thank({ ...thanks, kind: video ? "Clip" : "Photograph" });
       for (const part of this.root.querySelectorAll(".ground, .numbers")) part.hidden = !sample;
       const before = this.crop.read();
-      const shown = { address: address(sample, 2048), width: Number(width), height: Number(height), crop };
+      const shown = { address: address(sample, 2048), video, width: Number(width), height: Number(height), crop };
       if (sample) this.crop.show({ ...shown, title: this.root.querySelector("legend").textContent });
+      this.time.show({ frames: frames ?? 1, rate: rate ?? 0 }, kept ? this.time.read() : null);
       if (kept && sample && before) this.crop.write(before);
     }
     for (const image of this.thumbnails) image.classList.toggle("current", image.dataset.sample === sample);
@@ -55,12 +60,12 @@ class Further {
     details.querySelector("summary").textContent = details.open ? `Leave the ${name} out` : "Add another sample";
   }
 
-  thank({ credit, licence, url }) {
+  thank({ kind, credit, licence, url }) {
     const line = this.root.querySelector(".credit");
     line.hidden = !credit;
     if (!credit) return;
     const link = Object.assign(document.createElement("a"), { href: url, rel: "license", textContent: licence });
-    line.replaceChildren(`Photograph: ${credit}, `, link);
+    line.replaceChildren(`${kind}: ${credit}, `, link);
   }
 
   choose(sample) {
@@ -118,19 +123,37 @@ class Further {
     count(-1);
   }
 
-  offer({ id, width, height }) {
-    const option = new Option("Your photograph", id);
+  offer({ id, width, height, frames, rate }) {
+    const option = new Option(frames > 1 ? "Your clip" : "Your photograph", id);
     const [wide, high] = [Math.min(width, 512), Math.min(height, 512)];
     const crop = [Math.floor((width - wide) / 2), Math.floor((height - high) / 2), wide, high].join(",");
-    Object.assign(option.dataset, { width, height, crop });
+    Object.assign(option.dataset, { width, height, frames, rate, crop });
     this.select.add(option);
     this.addThumbnail(option);
     this.choose(id);
   }
 }
 
+/** Call the inputs as the chosen method does, where it has a name for each. */
+function nameInputs() {
+  const { titles } = document.querySelector("[name=method]:checked").dataset;
+  for (const [index, legend] of legends.entries()) {
+    legend.dataset.title ??= legend.textContent;
+    legend.textContent = titles?.split("|")[index] ?? legend.dataset.title;
+  }
+}
+
+const legends = [...document.querySelectorAll("[data-input]")].map((root) => root.querySelector(".several, legend:not(:has(*))"));
+for (const radio of document.querySelectorAll("[name=method]")) radio.addEventListener("change", nameInputs);
+window.addEventListener("pageshow", nameInputs);
+nameInputs();
+
 for (const root of document.querySelectorAll("[data-input]")) {
-  if (root.dataset.input === "1") new Crop(root);
-  else new Further(root);
+  if (root.dataset.input !== "1") {
+    new Further(root);
+    continue;
+  }
+  new Crop(root);
+  new TimeRange(root);
 }
 document.querySelector("#experiment > .visually-hidden").remove(); // stood in for the main button before those that show samples

@@ -3,7 +3,7 @@
 
 const SEEDS = 1_000_000;
 const form = document.querySelector("#experiment");
-const { size, width, height, seed } = form.elements;
+const { size, width, height, seed, frames } = form.elements;
 const crop = cropOf("");
 const total = document.querySelector("#run-size");
 const ORDINALS = ["first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth"];
@@ -16,7 +16,17 @@ function cropOf(prefix) {
 const chosen = () => form.elements.method.value;
 const radio = () => document.querySelector(`#method-${chosen()}`);
 const numbers = (fields) => ["x", "y", "width", "height"].map((side) => fields[side].value).join(",");
+const range = (prefix) => ["first", "count"].map((part) => form.elements[`${prefix}time.${part}`].value);
+const moving = () => radio().classList.contains("moving");
+const shared = () => (moving() ? [...document.querySelectorAll(".of-video [name]")] : []);
 const own = (method) => [...form.elements].filter((entry) => entry.name.startsWith(`${method}.`));
+
+/** An input's time range as the address says it: nothing of a photograph, or where it is all of the clip. */
+function time(prefix) {
+  const block = form.elements[`${prefix}time.first`].closest(".time");
+  const said = range(prefix).join(",");
+  return block.hidden || [",", `0,${block.dataset.frames}`].includes(said) ? "" : said;
+}
 
 function followCrop() {
   const follows = "follows" in radio().dataset; // else the method itself finds how large its texture is to be
@@ -25,8 +35,10 @@ function followCrop() {
   const known = follows || size.value !== "1";
   if (size.value !== "free") [width.value, height.value] = known ? [grown("width"), grown("height")] : ["", ""];
   const [w, h] = [width.value || (follows && crop.width.value), height.value || (follows && crop.height.value)];
-  const name = document.querySelector(`[for=method-${chosen()}]`).textContent;
-  total.textContent = w && h ? `${name}, ${w} × ${h} pixels` : name;
+  frames.placeholder = range("")[1];
+  const long = moving() ? `, ${frames.value || frames.placeholder} frames` : "";
+  const name = document.querySelector(`[for=method-${chosen()}]`).firstChild.textContent;
+  total.textContent = w && h ? `${name}, ${w} × ${h} pixels${long}` : name;
   clearTimeout(pending);
   pending = setTimeout(keepInAddress, 250);
 }
@@ -35,9 +47,12 @@ function keepInAddress() {
   const query = new URLSearchParams();
   query.set("method", chosen());
   query.set("crop", numbers(crop));
+  if (time("")) query.set("time", time(""));
   for (let number = 2; radio().classList.contains(`takes-${number}`); number += 1) {
-    const sample = form.elements[`input-${number}.sample`].value;
-    if (sample) query.set(ORDINALS[number - 1], `${sample}:${numbers(cropOf(`input-${number}.`))}`);
+    const prefix = `input-${number}.`;
+    const sample = form.elements[`${prefix}sample`].value;
+    const when = time(prefix) && `@${time(prefix)}`;
+    if (sample) query.set(ORDINALS[number - 1], `${sample}:${numbers(cropOf(prefix))}${when}`);
   }
   if (size.value !== "1") query.set("size", size.value);
   if (size.value === "free") {
@@ -45,12 +60,13 @@ function keepInAddress() {
     if (height.value) query.set("height", height.value);
   }
   if (seed.value) query.set("seed", seed.value);
-  for (const entry of own(chosen())) {
+  for (const entry of [...shared(), ...own(chosen())]) {
     const value = entry.type === "checkbox" ? (entry.checked ? "on" : "") : entry.value;
-    if (value !== entry.dataset.default) query.set(entry.name.slice(chosen().length + 1), value);
+    if (value !== entry.dataset.default) query.set(entry.name.split(".").at(-1), value);
   }
   const path = `/samples/${encodeURIComponent(form.elements.sample.value)}`;
-  history.replaceState(history.state, "", `${path}?${query.toString().replaceAll("%2C", ",").replaceAll("%3A", ":")}`);
+  const said = query.toString().replace(/%2C|%3A|%40/g, decodeURIComponent);
+  history.replaceState(history.state, "", `${path}?${said}`);
 }
 
 let before = chosen();
