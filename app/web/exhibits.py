@@ -9,17 +9,24 @@ from app.experiments.model import Experiment, Status
 from app.experiments.service import Service
 from app.images.crop import Rectangle
 from app.methods.explanation import Exhibit, Figure
+from app.methods.registry import method
+from app.web.clips import Clip, clip_of
 from app.web.drafts import form_url
+from app.web.panes import parts
 from app.web.templating import label
 
 SAMPLE = "Sample"
+CROP = "crop"
 MOST_IN_A_ROW = 7
 SMALL = 160  # pixels; what is smaller is shown at twice its size
 
 
 @dataclass(frozen=True)
 class Shown:
-    """One picture; ``url`` is empty for one that is being made, and ``change`` for all but an exhibit's last."""
+    """One picture or film; ``url`` is empty for one that is being made, and ``change`` for all but an exhibit's last.
+
+    ``leads`` says that it is an exhibit's first and an input.
+    """
 
     caption: str
     url: str
@@ -30,6 +37,8 @@ class Shown:
     crop: tuple[str, int, int, Rectangle] | None = None
     delta: float | None = None
     state: str = ""
+    leads: bool = False
+    clip: Clip | None = None
 
 
 def shown(service: Service, exhibit: Exhibit) -> list[Shown]:
@@ -49,6 +58,8 @@ def shown(service: Service, exhibit: Exhibit) -> list[Shown]:
             height=output.height,
             change=change if output is found[-1] else "",
             delta=deltas.get(output.name),
+            leads=output is found[0] and _is_crop(output.name),
+            clip=clip_of(made, output),
         )
         for output in found
     ]
@@ -60,7 +71,7 @@ def figure_view(service: Service, figure: Figure) -> dict[str, Any]:
     pictures = [picture for group in groups for picture in group]
     alike = len({picture.width for picture in pictures}) == 1
     if alike:
-        columns = _columns([group[0].caption == SAMPLE for group in groups], len(pictures))
+        columns = _columns([group[0].leads for group in groups], len(pictures))
     return {
         "figure": figure,
         "groups": [pictures] if alike else groups,
@@ -83,8 +94,20 @@ def _caption(exhibit: Exhibit, name: str, title: str, *, first: bool) -> str:
     if name == "texture":
         plain = title if exhibit.method in exhibit.show else label(exhibit.method)  # a texton is no texture
         return exhibit.label or plain
-    words = title.replace("Crop", SAMPLE) if name.startswith("crop") else title
+    words = _input_title(exhibit, name) if _is_crop(name) else title.replace("the crop", SAMPLE.lower())
     return f"{words}, {exhibit.label}" if first and exhibit.label and "texture" not in exhibit.show else words
+
+
+def _is_crop(name: str) -> bool:
+    return name == CROP or name.removeprefix(f"{CROP}-").isdigit()
+
+
+def _input_title(exhibit: Exhibit, name: str) -> str:
+    """Name an input by its part in the method, or as a sample."""
+    number = int(name.removeprefix(CROP).removeprefix("-") or 1)
+    if titles := parts(method(exhibit.method)):
+        return titles[number - 1]
+    return SAMPLE if number == 1 else f"{SAMPLE} {number}"
 
 
 def _deltas(experiment: Experiment) -> dict[str, float]:
@@ -95,7 +118,7 @@ def _deltas(experiment: Experiment) -> dict[str, float]:
 
 
 def _standing_in(service: Service, exhibit: Exhibit, made: Experiment | None) -> list[Shown]:
-    """The sample's crop, where it is on show, and one place for all that is not there yet."""
+    """The samples' crops, where they are on show, and one place for all that is not there yet."""
     try:
         experiment = service.catalogue.prepared(exhibit)
     except AppError:
@@ -110,14 +133,17 @@ def _standing_in(service: Service, exhibit: Exhibit, made: Experiment | None) ->
         change=form_url(experiment),
         state=_state(made, service.catalogue.making),
     )
-    return [*(_crops(service, experiment) if "crop" in exhibit.show else ()), texture]
+    return [*_crops(service, exhibit, experiment), texture]
 
 
-def _crops(service: Service, experiment: Experiment) -> Iterator[Shown]:
-    source = experiment.inputs[0]
-    sample = service.sample(source.sample)
-    crop = (sample.id, sample.width, sample.height, source.crop)
-    yield Shown(SAMPLE, "", f"/samples/{sample.id}", source.crop.width, source.crop.height, crop=crop)
+def _crops(service: Service, exhibit: Exhibit, experiment: Experiment) -> Iterator[Shown]:
+    for number, source in enumerate(experiment.inputs, 1):
+        name = CROP if number == 1 else f"{CROP}-{number}"
+        if name in exhibit.show:
+            sample = service.sample(source.sample)
+            crop = (sample.id, sample.width, sample.height, source.crop)
+            title, size = _input_title(exhibit, name), (source.crop.width, source.crop.height)
+            yield Shown(title, "", f"/samples/{sample.id}", *size, crop=crop, leads=number == 1)
 
 
 def _state(made: Experiment | None, making: bool) -> str:

@@ -1,7 +1,7 @@
 """The page of an experiment in all its states, two experiments side by side, and what their buttons do."""
 
 import secrets
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
@@ -14,15 +14,16 @@ from app.experiments.model import Experiment, Sample, Status
 from app.experiments.ownership import new_token
 from app.experiments.service import Service
 from app.experiments.submission import NewExperiment, NewInput
-from app.images.crop import Rectangle
+from app.images.crop import Frames, Rectangle
 from app.methods.fields import fields
-from app.methods.model import Method
+from app.methods.model import Method, MovingParams
 from app.methods.registry import METHODS, method
+from app.web.clips import address, moves
 from app.web.deps import ServiceDep, TokenDep, base_url, remember_owner
 from app.web.drafts import form_url
 from app.web.forms import SHARED
 from app.web.inputs import most
-from app.web.panes import crop_panes, facts, gallery, input_titles, steps, texture_pane, tiling
+from app.web.panes import crop_panes, facts, gallery, input_titles, looping, steps, texture_pane, tiling
 from app.web.snippets import snippets
 from app.web.templating import label, render
 
@@ -68,7 +69,7 @@ def experiment_page(
             "downloads": list(_downloads(experiment)),
             "timings": list(_timings(experiment)),
             "total": f"{sum(experiment.timings.values()):.2f} s",
-            "tiling": tiling([_seamless(experiment)]),
+            "tiling": _tiling([experiment]),
             "snippets": snippets(experiment, base),
         }
     return render(request, "experiment.html", context)
@@ -97,13 +98,29 @@ class Source:
     sample: Sample
     name: str
     crop: Rectangle
+    frames: Frames
+
+    @property
+    def address(self) -> str:
+        """Its sample's page, opened at the crop and the time range."""
+        time = f"&time={self.frames}" if self.sample.moving else ""
+        return f"/samples/{self.sample.id}?crop={self.crop}{time}"
+
+    @property
+    def range(self) -> str:
+        """Of a video, which of its frames."""
+        if not self.sample.moving:
+            return ""
+        last = self.frames.first + self.frames.count - 1
+        which = f"frames {self.frames.first}–{last}" if self.frames.count > 1 else f"frame {last}"
+        return f"{which} of {self.sample.frames}"
 
 
 def _sources(service: Service, experiment: Experiment) -> list[Source]:
     found = [service.sample(source.sample) for source in experiment.inputs]
-    names = [sample.title or "A photograph" for sample in found]
+    names = [sample.title or ("A video" if sample.moving else "A photograph") for sample in found]
     parts = zip(input_titles(experiment), found, names, experiment.inputs, strict=True)
-    return [Source(title, sample, name, of.crop) for title, sample, name, of in parts]
+    return [Source(title, sample, name, of.crop, of.frames) for title, sample, name, of in parts]
 
 
 def _subject(service: Service, experiment: Experiment) -> str:
@@ -122,14 +139,19 @@ def _rows(experiment: Experiment) -> Iterator[tuple[str, str]]:
 
 
 def _downloads(experiment: Experiment) -> Iterator[tuple[str, str]]:
-    address = f"/api/v1/experiments/{experiment.id}/outputs"
-    texture = f"{address}/texture?download=true"
+    texture = f"{address(experiment, 'texture')}?download=true"
+    if moves(experiment):
+        yield "WebM", texture
+        yield "MP4", f"{address(experiment, 'texture-mp4')}?download=true"
+        yield "Animated WebP", f"{address(experiment, 'preview')}?download=true"
+        yield "Everything, ZIP", f"/api/v1/experiments/{experiment.id}/outputs.zip"
+        return
     yield "PNG, 8 bit", f"{texture}&format=png&depth=8"
     yield "PNG, 16 bit", f"{texture}&format=png&depth=16"
     yield "JPEG", f"{texture}&format=jpeg"
     yield "WebP", f"{texture}&format=webp"
     yield "TIFF", f"{texture}&format=tiff"
-    yield "Everything, ZIP", f"{address}.zip"
+    yield "Everything, ZIP", f"/api/v1/experiments/{experiment.id}/outputs.zip"
 
 
 def _timings(experiment: Experiment) -> Iterator[tuple[str, str, str]]:
@@ -151,10 +173,14 @@ def _shares_phase(other: Method, experiment: Experiment) -> bool:
     return other.name != declared.name and other.phase and declared.phase and fits
 
 
-def _seamless(experiment: Experiment) -> bool:
-    declared = method(experiment.method)
+def _tiling(experiments: Sequence[Experiment]) -> str:
+    """Say whether their textures tile in space, and films loop in time."""
+    declared = [method(experiment.method) for experiment in experiments]
     # Not validated: an old experiment's parameters may be none that a later version takes.
-    return declared.toroidal(declared.params.model_construct(**experiment.parameters))
+    params = [each.params.model_construct(**run.parameters) for each, run in zip(declared, experiments, strict=True)]
+    seamless = [each.toroidal(chosen) for each, chosen in zip(declared, params, strict=True)]
+    loops = [getattr(chosen, "loop", True) for chosen in params if isinstance(chosen, MovingParams)]
+    return f"{tiling(seamless)} {looping(loops)}".rstrip()
 
 
 @router.get("/compare/{first_id}/{second_id}")
@@ -186,11 +212,11 @@ def compare(
         return render(request, "compare.html", context)
     panes = crop_panes(first)
     if not same_inputs:
-        panes += crop_panes(second, "other sample")
+        panes += crop_panes(second, other=True)
     panes += [texture_pane(run, note=f"seed {run.parameters['seed']}", page=_page(run)) for run in both]
     told = [dict(_rows(experiment)) for experiment in both]
     rows = [(name, [values.get(name, "–") for values in told]) for name in told[0] | told[1]]
-    context |= {"panes": panes, "experiments": both, "rows": rows, "tiling": tiling([_seamless(run) for run in both])}
+    context |= {"panes": panes, "experiments": both, "rows": rows, "tiling": _tiling(both)}
     return render(request, "compare.html", context)
 
 

@@ -6,13 +6,21 @@ from dataclasses import dataclass
 
 from app.errors import NotFoundError
 from app.experiments.model import Experiment, Output
+from app.methods.model import Method
+from app.methods.registry import method
+from app.web.clips import Clip, address, clip_of, moves
 from app.web.inputs import ORDINALS
 from app.web.templating import label
+
+CUBES = ("crop-cube", "cube")
 
 
 @dataclass(frozen=True)
 class Pane:
-    """One picture; ``page`` is where its title leads, ``delta`` its structure index where that is known."""
+    """One picture or film.
+
+    ``page`` is where its title leads, ``delta`` its structure index where that is known, ``clip`` how a film plays.
+    """
 
     title: str
     url: str
@@ -21,14 +29,16 @@ class Pane:
     note: str = ""
     page: str = ""
     delta: float | None = None
+    clip: Clip | None = None
 
 
-def crop_panes(experiment: Experiment, word: str = "sample") -> list[Pane]:
-    """Every input's crop."""
+def crop_panes(experiment: Experiment, *, other: bool = False) -> list[Pane]:
+    """Every input's crop; for ``other`` see `input_titles`."""
     deltas = _deltas(experiment, "inputs")
+    titles = input_titles(experiment, other=other)
     return [
         _pane(experiment, _output(experiment, name), title, delta=deltas[index] if index < len(deltas) else None)
-        for index, (name, title) in enumerate(zip(_crop_names(experiment), input_titles(experiment, word), strict=True))
+        for index, (name, title) in enumerate(zip(_crop_names(experiment), titles, strict=True))
     ]
 
 
@@ -50,12 +60,15 @@ def gallery(experiment: Experiment) -> list[Pane]:
 
 
 def steps(experiment: Experiment) -> list[Pane]:
-    """What led to the texture, with it and without the rest of the gallery."""
-    return [
-        _pane(experiment, output, output.title)
+    """What led to the texture, with it and without the rest of the gallery; of films the stills, their cubes first."""
+    moving = moves(experiment)
+    found = [
+        output
         for output in experiment.outputs
-        if output.listed and (output.kind == "view" or output.name == "texture")
+        if output.listed and (output.kind == "view" or output.name == "texture") and not (moving and output.frames > 1)
     ]
+    found.sort(key=lambda output: CUBES.index(output.name) if output.name in CUBES else len(CUBES))
+    return [_pane(experiment, output, output.title) for output in found]
 
 
 def tiling(seamless: Sequence[bool]) -> str:
@@ -73,13 +86,35 @@ def tiling(seamless: Sequence[bool]) -> str:
     return f"Not toroidal: like the sample’s, the edges of {which} do not meet, and a seam shows where they touch."
 
 
-def input_titles(experiment: Experiment, word: str = "sample") -> list[str]:
-    """Name every input: the sample, or the first sample and the others.
+def looping(loops: Sequence[bool]) -> str:
+    """Say of one film, or of several, whether they play for ever; nothing of none."""
+    if not loops:
+        return ""
+    several = len(loops) > 1
+    if all(loops):
+        which = "Their last frames continue" if several else "Its last frame continues"
+        return f"{which} in the first, so that there is no jump as it begins again."
+    if any(loops):
+        return "Only one of them loops: the other jumps from its last frame to the first."
+    return f"{'They do' if several else 'It does'} not loop: from the last frame to the first there is a jump."
 
-    Where one word more is said, as in "other sample", it stands in front.
+
+def parts(declared: Method) -> tuple[str, ...]:
+    """The titles of a method's inputs if every one has a part of its own; empty if they are alike."""
+    return () if len(declared.inputs) == 1 or declared.more else tuple(slot.title for slot in declared.inputs)
+
+
+def input_titles(experiment: Experiment, *, other: bool = False) -> list[str]:
+    """Name every input: by its part in the method, else the sample, or the first sample and the others.
+
+    ``other`` says that they stand beside those of another experiment.
     """
     count = len(experiment.inputs)
-    titles = [word] if count == 1 else [f"{ordinal} {word}" for ordinal in ORDINALS[:count]]
+    word = "other " if other else ""
+    if named := parts(method(experiment.method)):
+        titles = [f"{word}{title[0].lower()}{title[1:]}" for title in named]
+    else:
+        titles = [f"{word}sample"] if count == 1 else [f"{ordinal} {word}sample" for ordinal in ORDINALS[:count]]
     return [f"{title[0].upper()}{title[1:]}" for title in titles]
 
 
@@ -120,8 +155,8 @@ def _output(experiment: Experiment, name: str) -> Output:
 def _pane(
     experiment: Experiment, output: Output, title: str, *, note: str = "", page: str = "", delta: float | None = None
 ) -> Pane:
-    url = f"/api/v1/experiments/{experiment.id}/outputs/{output.name}"
-    return Pane(title, url, output.width, output.height, note, page, delta)
+    clip = clip_of(experiment, output)
+    return Pane(title, address(experiment, output.name), output.width, output.height, note, page, delta, clip)
 
 
 def _deltas(experiment: Experiment, part: str) -> list[float]:

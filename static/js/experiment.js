@@ -1,11 +1,15 @@
 // An experiment's page: what it needs is set up when it opens, and again when a finished run has replaced its waiting room.
 
 import { offerCopies } from "./copy.js";
+import { Player } from "./player.js";
 import { follow } from "./progress.js";
 import { Viewer } from "./viewer.js";
 
 function setUp() {
-  for (const root of document.querySelectorAll(".viewer:not(.waiting)")) if (root.querySelector(".panes")) new Viewer(root);
+  for (const root of document.querySelectorAll(".viewer:not(.waiting)")) {
+    if (root.querySelector(".panes")) new Viewer(root);
+    if (root.querySelector(".player")) new Player(root);
+  }
   offerCopies(document);
   const waiting = document.querySelector("[data-experiment]");
   if (waiting) follow(waiting, replace);

@@ -1,14 +1,17 @@
 // One stage of the viewer: pictures lying on grey, placed by a scale and a centre that all stages share.
 
-/** A picture: its <img>, its size in pixels, and a <div> that repeats it. */
+import { Mosaic } from "./mosaic.js";
+
+/** A picture or film: its <img> or <video>, its size in pixels, and a <div> or <canvas> that repeats it. */
 export function picture(stage, title) {
-  const [image, ...copies] = stage.querySelectorAll("img");
-  for (const copy of copies) copy.remove();
-  const tile = document.createElement("div");
+  const video = stage.querySelector("video");
+  const mosaic = video && new Mosaic(video);
+  const tile = mosaic?.canvas ?? document.createElement("div");
   tile.className = "tile";
   tile.setAttribute("role", "img");
   tile.hidden = true;
-  return { image, tile, title, width: Number(stage.dataset.width), height: Number(stage.dataset.height) };
+  const [width, height] = [Number(stage.dataset.width), Number(stage.dataset.height)];
+  return { image: video ?? stage.querySelector("img"), mosaic, tile, title, width, height };
 }
 
 const snapped = (value) => Math.round(value * devicePixelRatio) / devicePixelRatio;
@@ -30,7 +33,7 @@ export function place(shown, room, view, tiles, from = 0, to = 1) {
   target.classList.toggle("pixelated", view.scale > 1);
   if (tiles > 1) {
     shown.tile.setAttribute("aria-label", `${shown.title}, ${tiles} × ${tiles} times`);
-    repeat(shown, room, left, top, width, height, view.scale);
+    repeat(shown, room, left, top, width, height, view.scale, tiles);
     return;
   }
   shown.image.style.transform = `translate(${left}px, ${top}px) scale(${view.scale})`;
@@ -39,15 +42,17 @@ export function place(shown, room, view, tiles, from = 0, to = 1) {
   shown.image.style.clipPath = cutLeft || cutRight ? `inset(0 ${cutRight}px 0 ${cutLeft}px)` : "";
 }
 
-/** Repeat by the background of a box no larger than the stage, so that 16 × 3 × 4096 pixels cost no more than a screen. */
-function repeat({ image, tile, width, height }, room, left, top, wide, high, scale) {
+/** Repeat in a box no larger than the stage, so that 16 × 3 × 4096 pixels cost no more than a screen. */
+function repeat({ image, mosaic, tile, width, height }, room, left, top, wide, high, scale, tiles) {
   const [x0, y0] = [Math.max(0, left), Math.max(0, top)];
   const [x1, y1] = [Math.min(room.width, left + wide), Math.min(room.height, top + high)];
+  const box = { width: Math.max(0, x1 - x0), height: Math.max(0, y1 - y0) };
+  Object.assign(tile.style, { left: `${x0}px`, top: `${y0}px`, width: `${box.width}px`, height: `${box.height}px` });
+  if (mosaic) {
+    mosaic.place(box, left - x0, top - y0, width * scale, height * scale, tiles, scale <= 1);
+    return;
+  }
   Object.assign(tile.style, {
-    left: `${x0}px`,
-    top: `${y0}px`,
-    width: `${Math.max(0, x1 - x0)}px`,
-    height: `${Math.max(0, y1 - y0)}px`,
     backgroundImage: `url("${image.src}")`,
     backgroundSize: `${width * scale}px ${height * scale}px`,
     backgroundPosition: `${left - x0}px ${top - y0}px`,

@@ -1,0 +1,43 @@
+"""How pages show an experiment's films: the files that browsers choose from, a poster, and the clock's numbers."""
+
+from dataclasses import dataclass
+
+from app.experiments.model import Experiment, Output
+from app.experiments.pictures import POSTERS
+
+MP4 = "-mp4"  # ends the name of the same film for browsers that do not play the first file
+
+
+@dataclass(frozen=True)
+class Clip:
+    """A film; ``sources`` are (address, media type), the best first."""
+
+    sources: tuple[tuple[str, str], ...]
+    poster: str
+    frames: int
+    rate: float
+
+
+def address(experiment: Experiment, name: str) -> str:
+    """Where an output is."""
+    return f"/api/v1/experiments/{experiment.id}/outputs/{name}"
+
+
+def clip_of(experiment: Experiment, output: Output) -> Clip | None:
+    """The film that an output is, None for a picture."""
+    if not output.film:
+        return None
+    other = experiment.output(f"{output.name}{MP4}")
+    files = [output] if other is None else [output, other]
+    return Clip(
+        sources=tuple((address(experiment, file.name), file.media_type) for file in files),
+        poster=address(experiment, POSTERS[output.name]),
+        frames=output.frames,
+        rate=output.rate,
+    )
+
+
+def moves(experiment: Experiment) -> bool:
+    """Whether its texture is a video."""
+    texture = experiment.output("texture")
+    return texture is not None and texture.film

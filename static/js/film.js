@@ -1,0 +1,43 @@
+// A film: a <video> that counts in frames, and goes on counting when it has looped.
+
+const modulo = (value, count) => ((value % count) + count) % count;
+
+export class Film {
+  constructor(video) {
+    this.video = video;
+    this.count = Number(video.dataset.frames);
+    this.rate = Number(video.dataset.rate);
+    this.laps = 0;
+    this.last = 0;
+    video.controls = false;
+    video.preload = "auto";
+    // One that came with a page fetched by a script has not begun to load.
+    if (video.networkState === HTMLMediaElement.NETWORK_EMPTY) video.load();
+  }
+
+  /** Frames since the first one, with a fraction. */
+  get position() {
+    const time = this.video.currentTime;
+    if (time < this.last - this.count / this.rate / 2) this.laps += 1;
+    this.last = time;
+    return this.laps * this.count + Math.min(time * this.rate, this.count);
+  }
+
+  /** Show the frame at a whole position. Its middle is asked for: files write a frame's begin with rounded digits. */
+  go(position) {
+    this.laps = Math.floor(position / this.count);
+    this.last = (modulo(position, this.count) + 0.5) / this.rate;
+    this.video.currentTime = this.last;
+  }
+
+  /** Which of its own frames stands at a whole position. */
+  frame(position) {
+    return modulo(position, this.count);
+  }
+
+  /** Play at so many frames a second; 0 waits. */
+  pace(frames) {
+    const speed = frames / this.rate;
+    if (this.video.playbackRate !== speed) this.video.playbackRate = speed;
+  }
+}
