@@ -1,0 +1,293 @@
+"""Patches of random shape: Voronoi cells about the points of a jittered grid, with soft edges.
+
+Cell i has the centre p_i and the weight of Harrison's equation (1), with a shoulder that ends it:
+
+    w_i(x) = max(0, d(x, p_i)^(−f) − R^(−f)),   R = `REACH` spacings of the grid.
+
+A centre lies on a whole pixel and anywhere in the middle three quarters of its square of the grid, so that every weight
+is a slice of one table. The table holds logarithms: only their differences to the largest one at a pixel count, so no
+f over- or underflows, and at a centre the cell alone is left.
+
+With R = 3 the shoulder takes less from the weights than an 8-bit value shows where f ≥ 6. A sum of d^(−f) over the
+plane converges too slowly for smaller f to be cut unseen by any R that keeps the work linear (for f ≤ 1 it does not
+converge even when squared): there the shoulder is part of the model, and makes the edges end after a few spacings.
+
+References
+----------
+P. Harrison, "Patchwork Texture Synthesis", Monash University technical report, 2002: section 3 and figure 2.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import ceil, inf
+from typing import NamedTuple
+
+import numpy as np
+from numpy.random import SFC64, Generator, SeedSequence
+from numpy.typing import NDArray
+
+from app.synthesis.cell_shapes import REACH, ROUNDING, Axis, extents, farthest
+
+LEFT_OUT = 1 / 512  # of a pixel: a part that is smaller changes an 8-bit value by less than a half
+BLEND = 1 / 16  # of a pixel: a cell's blend zone is where its part is larger
+AT_CENTRE = 30.0  # logarithm of how much heavier a centre is than the pixel beside it
+
+Ints = NDArray[np.int64]
+Real = NDArray[np.float32]
+
+
+class Window(NamedTuple):
+    """A rectangle of the plane: rows ``top`` to ``bottom`` − 1, columns ``left`` to ``right`` − 1."""
+
+    top: int
+    bottom: int
+    left: int
+    right: int
+
+
+class Part(NamedTuple):
+    """What one centre has of a window.
+
+    ``rows`` and ``columns`` are slices into the window; ``weight`` is (rows, columns) float32, as a part of the largest
+    weight at each pixel; ``source`` = (y, x) is what must be added to a place of the window to be relative to the
+    centre: window row r is row r + y of the patch, whose row 0 is the centre's.
+    """
+
+    centre: int
+    rows: slice
+    columns: slice
+    weight: Real
+    source: tuple[int, int]
+
+
+@dataclass(frozen=True)
+class Cells:
+    """Cells that cover a plane, or a torus of the same size.
+
+    All boxes are rows of four numbers: top, bottom, left, right, with ``bottom`` and ``right`` one past the last.
+
+    Parameters
+    ----------
+    height, width : int
+        Of the plane.
+    sharpness : float
+        f.
+    unit : float
+        The spacing in pixels, in which distances are measured.
+    count : int
+        How many cells there are.
+    centres : ndarray of int64, shape (N, 2)
+        p_i as (y, x), N ≥ ``count``: centres outside the plane reach into it too.
+    cell : ndarray of int64, shape (N,)
+        The cell of each centre, 0 … count − 1. On the torus a cell has a centre at every turn, which must all be given
+        the same source; otherwise every centre is a cell of its own.
+    boxes : ndarray of int64, shape (N, 4)
+        In the plane, cut at its border: outside it a centre's part of a pixel is less than 1/512.
+    zones : ndarray of int64, shape (count, 4)
+        Relative to the centre: each cell's blend zone, where its part is at least 1/16.
+    cores : ndarray of int64, shape (count, 4)
+        Relative to the centre: what holds the Voronoi cell.
+    """
+
+    height: int
+    width: int
+    sharpness: float
+    unit: float
+    count: int
+    centres: Ints
+    cell: Ints
+    boxes: Ints
+    zones: Ints
+    cores: Ints
+
+    @property
+    def plane(self) -> Window:
+        return Window(0, self.height, 0, self.width)
+
+    @cached_property
+    def _table(self) -> Real:
+        """Logarithm of the weight at every distance of whole pixels, the centre in the middle."""
+        reach = int(np.abs(self.boxes - np.repeat(self.centres, 2, axis=1)).max())
+        square = np.arange(-reach, reach + 1, dtype=np.float64) ** 2
+        d = np.sqrt(square[:, None] + square[None, :])
+        d[reach, reach] = 1.0
+        table = log_weight(d / self.unit, self.sharpness)
+        table[reach, reach] += AT_CENTRE
+        return table.astype(np.float32)
+
+    def reaching(self, window: Window, among: Ints | None = None) -> Ints:
+        """Centres whose boxes meet a window, of all or of some."""
+        boxes = self.boxes if among is None else self.boxes[among]
+        top, bottom, left, right = boxes.T
+        found = (top < window.bottom) & (bottom > window.top) & (left < window.right) & (right > window.left)
+        indices = np.flatnonzero(found)
+        return indices if among is None else among[indices]
+
+    def parts(self, window: Window, among: Ints | None = None) -> list[Part]:
+        """Every centre's weights in a window.
+
+        Parameters
+        ----------
+        window : Window
+            Inside the plane.
+        among : ndarray of int64, optional
+            Centres to look at, where those that reach the window are known to be among them.
+
+        Returns
+        -------
+        list of Part
+            The sum of their weights is at least 1 at every pixel, as is the sum of the squares.
+        """
+        middle = len(self._table) // 2
+        largest = np.full((window.bottom - window.top, window.right - window.left), -inf, np.float32)
+        found = []
+        for index in self.reaching(window, among).tolist():
+            (y, x), (top, bottom, left, right) = self.centres[index].tolist(), self.boxes[index].tolist()
+            top, bottom = max(top, window.top), min(bottom, window.bottom)
+            left, right = max(left, window.left), min(right, window.right)
+            rows, columns = slice(top - window.top, bottom - window.top), slice(left - window.left, right - window.left)
+            logs = self._table[middle + top - y : middle + bottom - y, middle + left - x : middle + right - x]
+            np.maximum(largest[rows, columns], logs, out=largest[rows, columns])
+            found.append(Part(index, rows, columns, logs, (window.top - y, window.left - x)))
+        parts = []
+        for part in found:
+            weight = part.weight - largest[part.rows, part.columns]
+            parts.append(part._replace(weight=np.exp(weight, out=weight)))
+        return parts
+
+    def sources(self, height: int, width: int, seed: int) -> Ints:
+        """A source for every cell: places q_i of a sample, drawn so that the cell's blend zone lies inside it.
+
+        The faint rest of a cell, less than 1/16 of a pixel, may reach over the sample's border, by less than
+        `margin` pixels.
+
+        Parameters
+        ----------
+        height, width : int
+            Of the sample, at least `least_sample`.
+        seed : int
+            Not negative.
+
+        Returns
+        -------
+        ndarray of int64, shape (count, 2)
+            (y, x); a pixel x of cell i shows the sample's pixel x − p_i + q_i.
+
+        Raises
+        ------
+        ValueError
+            If the sample is too small.
+        """
+        top, bottom, left, right = self.zones.T
+        lows, highs = np.stack([-top, -left], 1), np.stack([height - bottom, width - right], 1)
+        if (lows > highs).any():
+            raise ValueError(f"A sample of {width} × {height} pixels does not hold the cells.")
+        return random(seed, 1).integers(lows, highs, endpoint=True)
+
+    def margin(self, sources: Ints, height: int, width: int) -> int:
+        """How many pixels beyond a sample's border the boxes reach from these sources: to be filled by mirroring."""
+        start = sources[self.cell] - self.centres
+        first = self.boxes[:, ::2] + start
+        last = self.boxes[:, 1::2] + start - (height, width)
+        return max(0, int(-first.min()), int(last.max()))
+
+
+def log_weight(d: NDArray[np.float64], sharpness: float) -> NDArray[np.float64]:
+    """log(d^(−f) − R^(−f)) of distances in spacings, −∞ from R on.
+
+    Examples
+    --------
+    >>> np.exp(log_weight(np.array([0.5, 3.0]), 2)).round(6).tolist()
+    [3.888889, 0.0]
+    """
+    with np.errstate(divide="ignore"):
+        shoulder = np.log1p(-(np.minimum(d / REACH, 1) ** sharpness))
+    return shoulder - sharpness * np.log(d)
+
+
+def least_sample(height: int, width: int, grid: int, sharpness: float) -> int:
+    """Pixels that each side of a sample must have, so that every blend zone lies inside, whatever the seed.
+
+    Parameters
+    ----------
+    height, width : int
+        Of the plane.
+    grid : int
+    sharpness : float
+
+    Examples
+    --------
+    >>> least_sample(512, 512, grid=64, sharpness=6) <= 256
+    True
+    """
+    return 2 * (ceil(farthest(sharpness, BLEND) * max(_spacings(height, width, grid))) + ROUNDING) + 1
+
+
+def jittered_cells(height: int, width: int, *, grid: int, sharpness: float, tileable: bool, seed: int) -> Cells:
+    """Cells about a jittered grid.
+
+    Parameters
+    ----------
+    height, width : int
+        Of the plane, at least 1.
+    grid : int
+        Spacing in pixels, at least 4; it is changed a little so that a whole number of squares fits.
+    sharpness : float
+        f, from 1 to 40.
+    tileable : bool
+        Measure distances on the torus. Otherwise cells beyond the plane's border also take part.
+    seed : int
+        Not negative.
+
+    Examples
+    --------
+    >>> cells = jittered_cells(40, 60, grid=20, sharpness=6, tileable=True, seed=1)
+    >>> cells.count, cells.cores.shape
+    (6, (6, 4))
+    """
+    axes = tuple(_axis(size, grid, sharpness, max(_spacings(height, width, grid))) for size in (height, width))
+    rows, columns = axes
+    unit = max(rows.spacing, columns.spacing)
+    number = np.arange(rows.count * columns.count).reshape(rows.count, columns.count)
+    shape = (rows.count + 2 * rows.beyond, columns.count + 2 * columns.beyond)
+    if tileable:
+        number = np.pad(number, [(rows.beyond, rows.beyond), (columns.beyond, columns.beyond)], "wrap")
+    else:
+        number = np.arange(shape[0] * shape[1]).reshape(shape)
+    jitter = random(seed, 0).random((int(number.max()) + 1, 2))[number]
+    y, x = rows.jittered(jitter[:, :, 0], 0), columns.jittered(jitter[:, :, 1], 1)
+    found = extents(rows, columns, y, x, unit, sharpness, (1, BLEND, LEFT_OUT))
+    found = found.reshape(3, -1, 4)
+    number = number.ravel()
+    whole = np.zeros((3, number.max() + 1, 4), np.int64)
+    for shapes, shape_of_all in zip(found, whole, strict=True):
+        np.minimum.at(shape_of_all[:, ::2], number, shapes[:, ::2])
+        np.maximum.at(shape_of_all[:, 1::2], number, shapes[:, 1::2])
+    centres = np.stack([y.ravel(), x.ravel()], 1)
+    boxes = whole[2][number] + np.repeat(centres, 2, axis=1)
+    boxes[:, :2] = boxes[:, :2].clip(0, height)
+    boxes[:, 2:] = boxes[:, 2:].clip(0, width)
+    kept = (boxes[:, 0] < boxes[:, 1]) & (boxes[:, 2] < boxes[:, 3])
+    cells, cell = np.unique(number[kept], return_inverse=True)
+    return Cells(
+        height, width, sharpness, unit, len(cells), centres[kept], cell, boxes[kept], whole[1][cells], whole[0][cells]
+    )
+
+
+def random(seed: int, stream: int) -> Generator:
+    """Random numbers of their own for each purpose."""
+    return Generator(SFC64(SeedSequence(seed, spawn_key=(stream,))))
+
+
+def _spacings(height: int, width: int, grid: int) -> tuple[float, float]:
+    return height / _squares(height, grid), width / _squares(width, grid)
+
+
+def _squares(size: int, grid: int) -> int:
+    return max(1, round(size / grid))
+
+
+def _axis(size: int, grid: int, sharpness: float, unit: float) -> Axis:
+    count = _squares(size, grid)
+    reached = farthest(sharpness, LEFT_OUT) * unit + ROUNDING
+    return Axis(size, count, ceil(reached * count / size) + 1)
