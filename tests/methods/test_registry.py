@@ -1,11 +1,10 @@
 """What every method of the registry promises, whatever it computes."""
 
 import io
-from collections.abc import Iterator, Sequence
 from datetime import UTC, datetime
 from itertools import pairwise
-from typing import Any
 
+import av
 import numpy as np
 import pytest
 from imagecodecs import png_decode
@@ -16,43 +15,16 @@ from app.errors import CancelledError, InvalidInputError
 from app.experiments.model import Sample
 from app.experiments.submission import Allowed, NewExperiment, NewInput, prepare
 from app.images.crop import Rectangle
-from app.methods.model import Context, Method, Picture, Progress, Size, Source, StillParams
+from app.methods.model import Method, Source, StillParams
 from app.methods.registry import METHODS
 from app.samples import bundled
 from app.settings import ROOT
+from tests.methods.runs import run, sources_for
 
 WITHOUT_CHANCE = {"modulus-phase"}  # nothing is drawn: the seed changes nothing
 EVERY = pytest.mark.parametrize("method", METHODS.values(), ids=list(METHODS))
-
-
-def a_crop(height: int = 48, width: int = 64, channels: int = 3, peak: int = 255, seed: int = 0) -> Source:
-    """Grain of two scales on a slope, so that neither borders nor colours are alike."""
-    rng = np.random.default_rng(seed)
-    fine = rng.uniform(0.3, 0.6, (height, width, channels))
-    coarse = np.kron(rng.uniform(-0.1, 0.1, (-(-height // 8), -(-width // 8), 1)), np.ones((8, 8, 1)))
-    slope = np.linspace(0, 0.2, width)[None, :, None]
-    return Source(np.round((fine + coarse[:height, :width] + slope) * peak).astype(np.float32), peak)
-
-
-def crops_for(method: Method, **shape: Any) -> list[Source]:
-    return [a_crop(**shape, seed=number) for number in range(len(method.inputs))]
-
-
-def run(
-    method: Method,
-    sources: Sequence[Source],
-    *,
-    depth: Any = 8,
-    threads: int = 2,
-    progress: Progress = lambda stage, fraction: None,
-    **parameters: Any,
-) -> Iterator[Picture]:
-    sizes = [Size(source.pixels.shape[1], source.pixels.shape[0], source.pixels.shape[2]) for source in sources]
-    params = method.params(**parameters)
-    width, height = method.size(sizes)
-    params = params.model_copy(update={"width": params.width or width, "height": params.height or height})
-    method.check(sizes, params)
-    return method.run(sources, params, Context(depth, threads, progress))
+STILL = {name: method for name, method in METHODS.items() if not method.moving}
+EVERY_STILL = pytest.mark.parametrize("method", STILL.values(), ids=list(STILL))
 
 
 @EVERY
@@ -101,14 +73,18 @@ def test_every_figure_is_an_experiment_on_bundled_samples_that_shows_its_outputs
 
 def _sample(sample_id: str) -> Sample:
     entry = next(entry for entry in bundled(ROOT / "samples") if entry.id == sample_id)
+    if entry.kind == "moving":
+        with av.open(entry.path) as container:
+            film = container.streams.video[0]
+            return Sample(sample_id, "", film.width, film.height, 3, 8, False, datetime.now(UTC), film.frames)
     with Image.open(entry.path) as picture:
         channels = 1 if picture.mode in ("L", "I;16") else 3
         return Sample(sample_id, "", *picture.size, channels, 8, False, datetime.now(UTC))
 
 
-@EVERY
+@EVERY_STILL
 def test_the_texture_comes_first_and_every_crop_is_shown(method: Method) -> None:
-    sources = crops_for(method)
+    sources = sources_for(method)
     pictures = list(run(method, sources))
     names = [picture.name for picture in pictures]
     assert (names[0], pictures[0].kind) == ("texture", "texture")
@@ -121,21 +97,21 @@ def test_the_texture_comes_first_and_every_crop_is_shown(method: Method) -> None
             assert decoded.size == (picture.width, picture.height)
 
 
-@EVERY
+@EVERY_STILL
 @pytest.mark.parametrize("shape", [(47, 53, 3), (48, 61, 1)], ids=["odd, colour", "even and prime, grey"])
 def test_any_size_grey_or_colour_gives_a_texture_of_that_kind(method: Method, shape: tuple[int, int, int]) -> None:
     height, width, channels = shape
-    texture = next(run(method, crops_for(method, height=height, width=width, channels=channels)))
+    texture = next(run(method, sources_for(method, height=height, width=width, channels=channels)))
     assert (texture.width, texture.height) == (width, height)
     pixels = png_decode(texture.data)
     assert pixels.shape == ((height, width, 3) if channels == 3 else (height, width))
     assert pixels.std() > 0
 
 
-@EVERY
+@EVERY_STILL
 def test_sixteen_bits_are_the_same_texture_more_finely(method: Method) -> None:
     """Both depths are roundings of the same floats; a crop of 16 bits gives the texture of its 8-bit one, scaled."""
-    sources = crops_for(method)
+    sources = sources_for(method)
     coarse = png_decode(next(run(method, sources, depth=8)).data).astype(float)
     fine = png_decode(next(run(method, sources, depth=16)).data)
     assert fine.dtype == np.uint16
@@ -144,9 +120,9 @@ def test_sixteen_bits_are_the_same_texture_more_finely(method: Method) -> None:
     assert np.abs(png_decode(next(run(method, deep, depth=8)).data) - coarse).max() <= 1
 
 
-@EVERY
+@EVERY_STILL
 def test_the_seed_alone_decides_and_not_the_threads(method: Method) -> None:
-    sources = crops_for(method)
+    sources = sources_for(method)
     first, again, other = (
         [picture.data for picture in run(method, sources, threads=threads, seed=seed)]
         for threads, seed in ((1, 5), (2, 5), (2, 6))
@@ -155,7 +131,7 @@ def test_the_seed_alone_decides_and_not_the_threads(method: Method) -> None:
     assert (first[0] != other[0]) == (method.name not in WITHOUT_CHANCE)
 
 
-@EVERY
+@EVERY_STILL
 def test_the_progress_never_goes_back_and_ends_at_one(method: Method) -> None:
     seen: list[float] = []
     stages: list[str] = []
@@ -164,13 +140,13 @@ def test_the_progress_never_goes_back_and_ends_at_one(method: Method) -> None:
         stages.append(stage)
         seen.append(fraction)
 
-    assert list(run(method, crops_for(method), progress=progress))
+    assert list(run(method, sources_for(method), progress=progress))
     assert all(before <= after for before, after in pairwise(seen))
     assert 0 <= seen[0] < seen[-1] == pytest.approx(1)
     assert all(stage == stage.lower() for stage in stages)
 
 
-@EVERY
+@EVERY_STILL
 @pytest.mark.parametrize("part", [0.0, 0.3, 0.7])
 def test_what_the_progress_raises_ends_the_run(method: Method, part: float) -> None:
     def progress(stage: str, fraction: float) -> None:
@@ -178,20 +154,20 @@ def test_what_the_progress_raises_ends_the_run(method: Method, part: float) -> N
             raise CancelledError("enough")
 
     with pytest.raises(CancelledError):
-        list(run(method, crops_for(method), progress=progress))
+        list(run(method, sources_for(method), progress=progress))
 
 
-@EVERY
+@EVERY_STILL
 def test_a_constant_crop_gives_that_constant(method: Method) -> None:
     constant = Source(np.full((48, 64, 3), (40, 120, 200), np.float32), 255)
     pixels = png_decode(next(run(method, [constant] * len(method.inputs))).data)
     assert np.abs(pixels.astype(int) - (40, 120, 200)).max() <= 1
 
 
-@EVERY
+@EVERY_STILL
 def test_values_that_are_no_numbers_are_refused(method: Method) -> None:
     for value in (np.nan, np.inf):
-        sources = crops_for(method)
+        sources = sources_for(method)
         sources[-1].pixels[3, 5, 0] = value
         with pytest.raises(InvalidInputError, match="finite") as refused:
             next(run(method, sources))

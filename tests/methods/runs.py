@@ -1,0 +1,64 @@
+"""Small inputs for any method, and running it on them."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from app.methods.model import Context, Film, Method, MovingParams, Picture, Progress, Source
+
+# What methods that copy patches need to run on inputs as small as these.
+SMALL: Mapping[str, Mapping[str, Any]] = {
+    "patchwork": {"grid": 8},
+    "transfer": {"grid": 8, "candidates": 20},
+    "video-patchwork": {"grid": 8, "interval": 4},
+    "video-transfer": {"grid": 8, "interval": 4, "candidates": 20},
+}
+
+
+def a_crop(height: int = 48, width: int = 64, channels: int = 3, peak: int = 255, seed: int = 0) -> Source:
+    """Grain of two scales on a slope, so that neither borders nor colours are alike."""
+    rng = np.random.default_rng(seed)
+    fine = rng.uniform(0.3, 0.6, (height, width, channels))
+    coarse = np.kron(rng.uniform(-0.1, 0.1, (-(-height // 8), -(-width // 8), 1)), np.ones((8, 8, 1)))
+    slope = np.linspace(0, 0.2, width)[None, :, None]
+    return Source(np.round((fine + coarse[:height, :width] + slope) * peak).astype(np.float32), peak)
+
+
+def a_clip(height: int = 48, width: int = 64, channels: int = 3, frames: int = 12, seed: int = 0) -> Source:
+    """The same grain drifting across, and grain that is new in every frame."""
+    still = a_crop(height, width + 2 * frames, channels, seed=seed).pixels
+    rng = np.random.default_rng(seed + 100)
+    film = np.stack([still[:, 2 * t : 2 * t + width] for t in range(frames)])
+    film = np.round(film + rng.uniform(-20, 20, film.shape)).clip(0, 255).astype(np.uint8)
+    return Source(film[0].astype(np.float32), 255, Film(film, 12.0))
+
+
+def sources_for(method: Method, **shape: Any) -> list[Source]:
+    """Inputs for a method's slots: a clip where it takes a video, else a crop."""
+    makers = [a_clip if slot.moving else a_crop for slot in method.inputs]
+    return [maker(**shape, seed=number) for number, maker in enumerate(makers)]
+
+
+def run(
+    method: Method,
+    sources: Sequence[Source],
+    *,
+    depth: Any = 8,
+    threads: int = 2,
+    progress: Progress = lambda stage, fraction: None,
+    scratch: Path | None = None,
+    **parameters: Any,
+) -> Iterator[Picture]:
+    """Run a method as the service does: sizes and frames filled in, and checked before."""
+    sizes = [source.size for source in sources]
+    params = method.params(**{**SMALL.get(method.name, {}), **parameters})
+    width, height = method.size(sizes)
+    filled = {"width": params.width or width, "height": params.height or height}
+    if isinstance(params, MovingParams):
+        filled["frames"] = params.frames or max(size.frames for size in sizes)
+    params = params.model_copy(update=filled)
+    method.check(sizes, params)
+    context = Context(depth, threads, progress)
+    return method.run(sources, params, context if scratch is None else Context(depth, threads, progress, scratch))
