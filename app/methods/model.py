@@ -40,14 +40,19 @@ class MovingParams(StillParams):
     frames: int | None = Field(None, ge=2, title="Frames", description="Frames of the video; default: as the clip.")
 
 
-class SeamlessParams(MovingParams):
-    """Parameters of those whose videos can be with or without a seam; any other's have none."""
+class LoopParams(MovingParams):
+    """Parameters of those whose videos can play in a loop or not."""
 
     loop: bool = Field(
         True,
         title="Loop",
         description="The last frame continues in the first, so that the video plays for ever without a jump.",
     )
+
+
+class SeamlessParams(LoopParams):
+    """Parameters of those whose frames can tile or not besides."""
+
     tileable: bool = Field(
         True, title="Tileable", description="Opposite edges of every frame meet, so that it tiles without a seam."
     )
