@@ -1,22 +1,27 @@
-"""An uploaded file's pixels: upright, in sRGB, at full depth, without metadata."""
+"""An uploaded file's pixels, of a picture or a video: upright, in sRGB, at full depth, without metadata."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from app.errors import BrokenFileError, TooLargeError, UnsupportedFormatError
 from app.images.colour import to_srgb
-from app.images.formats import jpeg, png, tiff, webp
-from app.images.formats.raw import Raw, is_opaque
-from app.images.png import SIGNATURE, Pixels, PngWriter
+from app.images.formats import animation, film, jpeg, png, tiff, webp
+from app.images.formats.clip import Clip, ClipLimits, Frame, rate_of
+from app.images.formats.containers import container_of
+from app.images.formats.raw import Raw, is_opaque, upright, with_channels
+from app.images.png import SIGNATURE, Pixels
 
 MEBIBYTE = 1 << 20
-STRIP_ROWS, STRIP_PIXELS = 64, 1 << 16  # small strips: a crop is read by strips
-FORMATS = "PNG, JPEG, WebP and TIFF"
+FORMATS = "PNG, JPEG, WebP, TIFF and GIF pictures, and MP4 (H.264), WebM, GIF, WebP and PNG videos"
+STILL = "image/png"
 OTHERS = {
-    b"GIF8": "a GIF picture",
+    b"FLV": "a Flash video",
+    b"OggS": "an Ogg video",
+    b"\0\0\1\xba": "an MPEG video",
     b"BM": "a BMP picture",
     b"%PDF": "a PDF document",
     b"PK\3\4": "an archive or an office document",
@@ -40,26 +45,60 @@ class Limits:
     film_seconds: float = 60.0
     film_pixels: int = 1 << 28
 
+    @property
+    def clip(self) -> ClipLimits:
+        """Those of a video."""
+        return ClipLimits(self.film_frames, self.film_seconds, self.film_pixels)
+
 
 @dataclass(frozen=True)
 class Decoded:
-    """A picture, upright and in sRGB.
+    """A picture or a video, upright and in sRGB.
 
     ``pixels`` is (H, W, C) uint8 or uint16, C 1 (grey) or 3 (RGB); ``alpha`` is (H, W) of the same type, or None if
-    every pixel is opaque (`app.images.formats.raw.is_opaque`).
+    every pixel is opaque (`app.images.formats.raw.is_opaque`). Of a video both are its film strip: the ``frames``,
+    ``rate`` of them a second, one below the other, uint8. ``media_type`` is what a video was.
     """
 
     pixels: Pixels
     alpha: Pixels | None
+    frames: int = 1
+    rate: float = 0.0
+    media_type: str = STILL
 
     @property
     def depth(self) -> int:
         """Bits per channel, 8 or 16."""
         return self.pixels.itemsize * 8
 
+    @property
+    def height(self) -> int:
+        """Rows of one frame."""
+        return len(self.pixels) // self.frames
+
 
 def decode(path: Path, limits: Limits) -> Decoded:
-    """Read an uploaded file. Its format is told by content, never by name.
+    """Read an uploaded file as a whole.
+
+    Raises
+    ------
+    UnsupportedFormatError, BrokenFileError, TooLargeError
+        As `read`.
+    """
+    found = read(path, limits)
+    if isinstance(found, Decoded):
+        return found
+    strip, times = bytearray(), []  # grows in place, which a list of arrays does not
+    for frame in found.frames:
+        strip += frame.pixels.tobytes()
+        times.append(frame.seconds)
+    pixels, alpha = with_channels(np.frombuffer(strip, np.uint8).reshape(-1, found.width, found.channels))
+    media_type = found.media_type if len(times) > 1 else STILL
+    return Decoded(pixels, alpha, len(times), rate_of(times), media_type)
+
+
+def read(path: Path, limits: Limits) -> Decoded | Clip:
+    """Read an uploaded picture, or begin to read a video. The format is told by content, never by name.
 
     Nothing here bounds time or memory: `app.images.intake` runs it in a process that does.
 
@@ -70,47 +109,50 @@ def decode(path: Path, limits: Limits) -> Decoded:
     BrokenFileError
         If it is empty, truncated, damaged or lies about its size.
     TooLargeError
-        If it has more bytes or pixels than the limits allow.
+        If it has more bytes, pixels, frames or seconds than the limits allow.
     """
     size = path.stat().st_size
     if size > limits.bytes:
         raise TooLargeError(
             f"The file has {size / MEBIBYTE:,.1f} MB; at most {limits.bytes / MEBIBYTE:,.1f} MB are accepted. "
-            "Make the picture smaller, or save it as JPEG, and upload it again."
+            "Make the picture smaller or save it as JPEG, make the video smaller or shorter, and upload it again."
         )
     data = path.read_bytes()
-    reader = _reader(data)
+    if not data:
+        raise BrokenFileError("The file is empty: choose it again and upload it once more.")
+    with _telling():
+        if container := container_of(data):
+            clip = film.decode(data, container, limits.pixels, limits.clip)
+        elif animation.is_animation(data):
+            clip = animation.decode(data, limits.pixels, limits.clip)
+        else:
+            raw = _reader(data)(data, limits.pixels)
+            pixels = upright(to_srgb(raw.pixels, raw.profile), raw.orientation)
+            opaque = raw.alpha is None or is_opaque(raw.alpha)
+            return Decoded(pixels, None if raw.alpha is None or opaque else upright(raw.alpha, raw.orientation))
+    return replace(clip, frames=_told(clip.frames))
+
+
+def _told(frames: Iterator[Frame]) -> Iterator[Frame]:
+    with _telling():
+        yield from frames
+
+
+@contextmanager
+def _telling() -> Iterator[None]:
     try:
-        raw = reader(data, limits.pixels)
+        yield
     except (UnsupportedFormatError, BrokenFileError, TooLargeError, MemoryError):
         raise
     except Exception as error:
         # The libraries raise dozens of kinds on broken input, IndexError and struct.error among them.
         raise BrokenFileError(
             "This file cannot be decoded; it is damaged or incomplete. "
-            "Open it in an image editor, save it again and upload the new file."
+            "Open it in the program that made it, save it again and upload the new file."
         ) from error
-    pixels = _upright(to_srgb(raw.pixels, raw.profile), raw.orientation)
-    opaque = raw.alpha is None or is_opaque(raw.alpha)
-    return Decoded(pixels, None if raw.alpha is None or opaque else _upright(raw.alpha, raw.orientation))
-
-
-def to_png(picture: Decoded) -> bytes:
-    """Write a picture as PNG: grey or RGB, with an alpha channel if a pixel is not opaque, and no metadata."""
-    height, width, channels = picture.pixels.shape
-    writer = PngWriter(width, height, channels + (picture.alpha is not None), picture.depth)
-    rows = max(STRIP_ROWS, STRIP_PIXELS // width)
-    for y in range(0, height, rows):
-        strip = picture.pixels[y : y + rows]
-        if picture.alpha is not None:
-            strip = np.concatenate([strip, picture.alpha[y : y + rows, :, None]], axis=2)
-        writer.write(y, strip)
-    return writer.finish()
 
 
 def _reader(data: bytes) -> Callable[[bytes, int], Raw]:
-    if not data:
-        raise BrokenFileError("The file is empty: choose it again and upload it once more.")
     if data.startswith(SIGNATURE):
         return png.decode
     if data.startswith(b"\xff\xd8\xff"):
@@ -121,17 +163,8 @@ def _reader(data: bytes) -> Callable[[bytes, int], Raw]:
         return tiff.decode
     kind = next((kind for start, kind in OTHERS.items() if data.startswith(start)), None)
     if data[4:8] == b"ftyp":
-        kind = "a HEIC or AVIF picture" if data[8:12] in (b"heic", b"heix", b"mif1", b"msf1", b"avif") else "a video"
+        kind = "a HEIC or AVIF picture"
+    elif data[8:12] == b"AVI ":
+        kind = "an AVI video"
     found = f"This file is {kind}, which is" if kind else "This file is"
     raise UnsupportedFormatError(f"{found} not of a format that can be read: {FORMATS} work. Save it as one of these.")
-
-
-def _upright(array: Pixels, orientation: int) -> Pixels:
-    """Apply EXIF's orientation, a number from 1 to 8; any other leaves the picture as it is."""
-    if orientation in (5, 6, 7, 8):
-        array = array.swapaxes(0, 1)
-    if orientation in (2, 3, 6, 7):
-        array = array[:, ::-1]
-    if orientation in (3, 4, 7, 8):
-        array = array[::-1]
-    return array

@@ -29,7 +29,8 @@ import imagecodecs
 from PIL import Image
 
 from app.errors import AppError
-from app.images.decode import Limits, decode, to_png
+from app.images.decode import Limits
+from app.images.keep import store
 
 MESSAGE_BYTES = 1 << 16
 PR_SET_PDEATHSIG = 1
@@ -111,7 +112,8 @@ def _confine(server: int, limits: Limits) -> None:
         os._exit(1)
     mapped = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0]) * PAGE
     resource.setrlimit(resource.RLIMIT_AS, (mapped + limits.memory, mapped + limits.memory))
-    resource.setrlimit(resource.RLIMIT_CPU, (math.ceil(limits.seconds) + 1, math.ceil(limits.seconds) + 2))
+    most = (math.ceil(limits.seconds) + 1) * (os.cpu_count() or 1)  # of all threads together
+    resource.setrlimit(resource.RLIMIT_CPU, (most, most + 1))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     Image.MAX_IMAGE_PIXELS = limits.pixels
     warnings.simplefilter("error", Image.DecompressionBombWarning)
@@ -119,8 +121,7 @@ def _confine(server: int, limits: Limits) -> None:
 
 def _work(path: Path, destination: Path, limits: Limits) -> dict[str, Any]:
     try:
-        picture = decode(path, limits)
-        destination.write_bytes(to_png(picture))
+        return asdict(store(path, destination, limits))
     except AppError as error:
         return {"error": type(error).__name__, "message": error.message}
     except MemoryError:
@@ -128,14 +129,6 @@ def _work(path: Path, destination: Path, limits: Limits) -> dict[str, Any]:
     except Exception:
         traceback.print_exc()
         return {"error": "Exception"}
-    height, width, channels = picture.pixels.shape
-    return {
-        "width": width,
-        "height": height,
-        "channels": channels,
-        "depth": picture.depth,
-        "transparent": picture.alpha is not None,
-    }
 
 
 def _warm_up() -> None:

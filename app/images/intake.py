@@ -154,17 +154,17 @@ def _decoded(message: bytes, limits: Limits) -> dict[str, Any]:
         raise error(said["message"])
     if said.get("error") == "MemoryError":
         raise TooLargeError(
-            f"Decoding this picture takes more than the {limits.memory / (1 << 20):,.0f} MB of memory that it may use: "
-            "make it smaller, or save it as an ordinary PNG or JPEG, and upload it again."
+            f"Decoding this file takes more than the {limits.memory / (1 << 20):,.0f} MB of memory that it may use: "
+            "make it smaller, or save it as an ordinary PNG, JPEG or MP4 (H.264), and upload it again."
         )
     if said.get("ended") == "late":
         raise TooLargeError(
-            f"Decoding this picture takes more than the {limits.seconds:g} seconds that it may: "
-            "make it smaller, or save it as an ordinary (not progressive) JPEG, and upload it again."
+            f"Decoding this file takes more than the {limits.seconds:g} seconds that it may: make it smaller, a video "
+            "shorter, or save it as an ordinary (not progressive) JPEG or MP4 (H.264), and upload it again."
         )
     raise BrokenFileError(
         "The decoder failed on this file; it is probably damaged. "
-        "Open it in an image editor, save it again and upload the new file."
+        "Open it in the program that made it, save it again and upload the new file."
     )
 
 

@@ -11,6 +11,7 @@ crop out of a large picture without decoding all of it.
 
 import struct
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from threading import Lock
 from typing import Any, NamedTuple
 
@@ -46,8 +47,10 @@ class PngWriter:
 
     Parameters
     ----------
-    width, height : int
-        Size in pixels, at least 1 × 1.
+    width : int
+        In pixels, at least 1.
+    height : int or None
+        At least 1; None: as many rows as will be written.
     channels : int
         1 grey, 2 grey and alpha, 3 RGB, 4 RGB and alpha.
     depth : int
@@ -71,8 +74,8 @@ class PngWriter:
     b'PNG'
     """
 
-    def __init__(self, width: int, height: int, channels: int, depth: int) -> None:
-        if width < 1 or height < 1 or channels not in COLOUR_TYPES or depth not in DTYPES:
+    def __init__(self, width: int, height: int | None, channels: int, depth: int) -> None:
+        if width < 1 or (height is not None and height < 1) or channels not in COLOUR_TYPES or depth not in DTYPES:
             raise ValueError(f"no PNG of {width} × {height} pixels with {channels} channels of {depth} bits")
         self.width, self.height, self.channels, self.depth = width, height, channels, depth
         self._strips: dict[int, _Strip] = {}
@@ -96,7 +99,7 @@ class PngWriter:
         rows = len(block)
         if block.dtype != DTYPES[self.depth] or block.size != rows * self.width * self.channels:
             raise ValueError(f"a block of shape {block.shape} and type {block.dtype} is not of this picture")
-        if rows < 1 or y < 0 or y + rows > self.height:
+        if rows < 1 or y < 0 or (self.height is not None and y + rows > self.height):
             raise ValueError(f"rows {y} to {y + rows} are not in a picture of {self.height} rows")
         strip = _strip(block, self.channels * self.depth // 8)
         with self._lock:
@@ -112,6 +115,21 @@ class PngWriter:
         ValueError
             If a row was not written, or written twice.
         """
+        return b"".join(self._pieces())
+
+    def save(self, path: Path) -> None:
+        """Write the file, of which a large one would not fit into memory twice.
+
+        Raises
+        ------
+        ValueError
+            As `finish`.
+        """
+        pieces = self._pieces()
+        with path.open("wb") as file:
+            file.writelines(pieces)
+
+    def _pieces(self) -> list[bytes]:
         with self._lock:
             strips = sorted(self._strips.items())
         below, adler, length = 0, 1, self.width * self.channels * self.depth // 8 + 1
@@ -120,14 +138,14 @@ class PngWriter:
                 raise ValueError(f"row {min(y, below)} was written {'twice' if y < below else 'never'}")
             below = y + strip.rows
             adler = adler32_combine(adler, strip.adler, strip.rows * length)
-        if below != self.height:
+        if below != self.height and (self.height is not None or below == 0):
             raise ValueError(f"row {below} was written never")
-        header = HEADER.pack(self.width, self.height, self.depth, COLOUR_TYPES[self.channels], 0, 0, 0)
+        header = HEADER.pack(self.width, below, self.depth, COLOUR_TYPES[self.channels], 0, 0, 0)
         table = b"".join(STRIP_ENTRY.pack(strip.rows, strip.size, strip.adler) for _, strip in strips)
         pieces = [SIGNATURE, *chunk(b"IHDR", header), *chunk(b"sRGB", b"\0"), *chunk(STRIP_TABLE, table), *FIRST_DATA]
         for _, strip in strips:
             pieces += strip.pieces
-        return b"".join([*pieces, *last_data(adler), *chunk(b"IEND")])
+        return [*pieces, *last_data(adler), *chunk(b"IEND")]
 
 
 def encode_png(array: Pixels, threads: int = 1) -> bytes:

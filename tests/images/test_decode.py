@@ -1,4 +1,4 @@
-"""Uploads: every kind of the four formats is read at full depth, upright and in sRGB."""
+"""Uploads of pictures: every kind of the four formats is read at full depth, upright and in sRGB."""
 
 import io
 from collections.abc import Callable
@@ -10,7 +10,8 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image, ImageOps
 
-from app.images.decode import Decoded, to_png
+from app.images.decode import Decoded
+from app.images.keep import to_png
 
 Read = Callable[..., Decoded]
 Noise = Callable[..., NDArray[Any]]
@@ -138,13 +139,6 @@ def test_webp_is_read_with_and_without_transparency(read: Read, noise: Noise) ->
 def test_lossy_webp_looks_like_its_source(read: Read, photograph: NDArray[np.uint8]) -> None:
     picture = read(saved(Image.fromarray(photograph), "webp", quality=95))
     assert abs(picture.pixels.astype(int) - photograph).mean() < 4
-
-
-@pytest.mark.parametrize("file_format", ["webp", "png"])
-def test_of_an_animation_the_first_picture_is_taken(read: Read, noise: Noise, file_format: str) -> None:
-    frames = [Image.fromarray(noise(16, 16, 3, seed=seed)) for seed in range(3)]
-    data = saved(frames[0], file_format, save_all=True, append_images=frames[1:], lossless=True)
-    np.testing.assert_array_equal(read(data).pixels, np.asarray(frames[0]))
 
 
 @pytest.mark.parametrize("lowest", [255, 254])

@@ -13,7 +13,8 @@ from PIL import Image
 
 from app.errors import InvalidInputError
 from app.images.crop import Rectangle
-from app.images.decode import Decoded, to_png
+from app.images.decode import Decoded
+from app.images.keep import to_png
 from app.images.png import PngWriter, encode_png
 from app.images.read import has_transparency, read_crop
 

@@ -1,6 +1,6 @@
 """PNG of every kind: 1 to 16 bits, grey, palette and colour, transparent or not, interlaced or not.
 
-Of an animated PNG this is the still picture that every viewer shows. The gAMA and cHRM chunks are not used.
+Animated ones are read by `app.images.formats.animation`. The gAMA and cHRM chunks are not used.
 """
 
 from collections.abc import Iterator
@@ -33,8 +33,8 @@ def decode(data: bytes, max_pixels: int) -> Raw:
     TooLargeError
         If it has more than ``max_pixels``.
     """
-    chunks = _chunks(data)
-    name, header = next(chunks, (b"", b""))
+    remaining = chunks(data)
+    name, header = next(remaining, (b"", b""))
     if name != b"IHDR" or len(header) != 13:
         raise BrokenFileError(DAMAGED.format(NAME))
     width, height, depth, colour, _, _, interlaced = HEADER.unpack(header)
@@ -45,7 +45,7 @@ def decode(data: bytes, max_pixels: int) -> Raw:
     kept = [SIGNATURE, *chunk(b"IHDR", header)]
     compressed: list[bytes] = []
     profile, upright, ended = None, 1, False
-    for name, content in chunks:
+    for name, content in remaining:
         if name in (b"PLTE", b"tRNS", b"IDAT"):
             kept += chunk(name, content)
         if name == b"IDAT":
@@ -68,7 +68,7 @@ def decode(data: bytes, max_pixels: int) -> Raw:
     return Raw(pixels, alpha, profile, upright)
 
 
-def _chunks(data: bytes) -> Iterator[tuple[bytes, bytes]]:
+def chunks(data: bytes) -> Iterator[tuple[bytes, bytes]]:
     """Name and content of every chunk whose checksum holds."""
     at = len(SIGNATURE)
     while at + 12 <= len(data):

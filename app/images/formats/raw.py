@@ -68,3 +68,14 @@ def orientation(read: Callable[[], Image.Exif]) -> int:
         return int(read().get(EXIF_ORIENTATION, 1))
     except Exception:  # Pillow raises whatever it likes on broken EXIF
         return 1
+
+
+def upright(array: Pixels, orientation: int) -> Pixels:
+    """Apply EXIF's orientation, a number from 1 to 8; any other leaves the picture as it is."""
+    if orientation in (5, 6, 7, 8):
+        array = array.swapaxes(0, 1)
+    if orientation in (2, 3, 6, 7):
+        array = array[:, ::-1]
+    if orientation in (3, 4, 7, 8):
+        array = array[::-1]
+    return array

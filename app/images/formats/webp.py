@@ -1,4 +1,4 @@
-"""WebP, lossy and lossless, transparent or not; of an animation the first picture."""
+"""WebP, lossy and lossless, transparent or not; animations are read by `app.images.formats.animation`."""
 
 import io
 
@@ -21,7 +21,7 @@ def decode(data: bytes, max_pixels: int) -> Raw:
     TooLargeError
         If it has more than ``max_pixels``.
     """
-    width, height = _size(data)
+    width, height = size(data)
     check_size(width, height, max_pixels, NAME)
     if int.from_bytes(data[4:8], "little") + 8 > len(data):
         raise BrokenFileError(DAMAGED.format(NAME))
@@ -33,7 +33,7 @@ def decode(data: bytes, max_pixels: int) -> Raw:
     return Raw(pixels, alpha, profile, upright)
 
 
-def _size(data: bytes) -> tuple[int, int]:
+def size(data: bytes) -> tuple[int, int]:
     """Width and height from the header: opening the file in a decoder allocates the whole canvas already."""
     kind, body = data[12:16], data[20:30]
     if len(body) == 10:

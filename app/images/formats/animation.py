@@ -1,0 +1,145 @@
+"""Animations: GIF, WebP and PNG. A file is gone through once for its times and colours, and again for its frames.
+
+A frame that is shown k times as long as the shortest is repeated k times (unless that would be too many frames), so
+that the timing is kept at one rate. As in browsers, ten milliseconds or less count as a tenth of a second. Colour and
+transparency follow the still pictures of the same format; a GIF is grey if every pixel is.
+"""
+
+import io
+from collections.abc import Iterator
+from itertools import islice
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from app.errors import BrokenFileError, UnsupportedFormatError
+from app.images.colour import to_srgb
+from app.images.formats import png, webp
+from app.images.formats.clip import Clip, ClipLimits, Frame, check_clip
+from app.images.formats.raw import DAMAGED, check_size, is_opaque, orientation, upright
+from app.images.png import HEADER, SIGNATURE
+
+MEDIA_TYPES = {"GIF": "image/gif", "PNG": "image/apng", "WEBP": "image/webp"}
+HASTE, USUAL = 10.0, 100.0  # milliseconds
+TRAILER = b";"
+ANIMATED_WEBP = 0x02
+GREY_MODES = ("1", "L", "LA")
+CHANNELS = {1: [0], 2: [0, 3], 3: [0, 1, 2], 4: [0, 1, 2, 3]}  # of red, green, blue and alpha
+
+
+def is_animation(data: bytes) -> bool:
+    """Whether the file is a GIF, or a WebP or PNG file that holds more than a still picture."""
+    if data.startswith(b"GIF8"):
+        return True
+    if data.startswith(b"RIFF"):
+        return data[12:16] == b"VP8X" and bool(data[20] & ANIMATED_WEBP)
+    if data.startswith(SIGNATURE):
+        for name, content in png.chunks(data):
+            if name == b"IDAT":
+                break
+            if name == b"acTL":
+                return int.from_bytes(content[:4], "big") > 1
+    return False
+
+
+def decode(data: bytes, max_pixels: int, limits: ClipLimits) -> Clip:
+    """Read an animation; its frames are composed while they are taken.
+
+    Raises
+    ------
+    UnsupportedFormatError
+        If it has 16 bits per channel.
+    BrokenFileError
+        If it is truncated or damaged.
+    TooLargeError
+        If it has more pixels, frames or seconds than the limits allow.
+    """
+    file_format, width, height = _header(data)
+    check_size(width, height, max_pixels, file_format)
+    grey, opaque, times = file_format != "WEBP", True, []
+    for image in _images(data, file_format):
+        pixels = _pixels(image, (width, height))
+        grey = grey and (file_format == "GIF" or image.mode in GREY_MODES) and _is_grey(pixels)
+        opaque = opaque and is_opaque(pixels[..., 3])
+        duration = float(image.info.get("duration", 0))
+        times.append(duration if duration > HASTE else USUAL)
+        check_clip(width, height, len(times), sum(times) / 1000, limits, more=True)
+    repeats = [round(time / min(times)) for time in times]
+    if sum(repeats) > min(limits.frames, limits.pixels // (width * height)):
+        repeats = [1] * len(times)
+    channels = (1 if grey else 3) + (not opaque)
+    with Image.open(io.BytesIO(data), formats=[file_format]) as image:
+        profile, turned = image.info.get("icc_profile"), orientation(image.getexif)
+    if turned > 4:
+        width, height = height, width
+
+    def frames() -> Iterator[Frame]:
+        interval, shown = sum(times) / sum(repeats) / 1000, 0
+        for image, repeat in zip(_images(data, file_format), repeats, strict=True):
+            pixels = _pixels(image, image.size)[..., CHANNELS[channels]]
+            colours = channels - (not opaque)
+            pixels[..., :colours] = to_srgb(pixels[..., :colours], profile)
+            frame = upright(pixels, turned)
+            for _ in range(repeat):
+                yield Frame(frame, shown * interval)
+                shown += 1
+
+    return Clip(width, height, channels, MEDIA_TYPES[file_format], frames())
+
+
+def _header(data: bytes) -> tuple[str, int, int]:
+    """Pillow's name of the format, width and height; refuse a file that is damaged as far as that can be told."""
+    if data.startswith(b"GIF8"):
+        return "GIF", int.from_bytes(data[6:8], "little"), int.from_bytes(data[8:10], "little")
+    if data.startswith(b"RIFF"):
+        if int.from_bytes(data[4:8], "little") + 8 > len(data):
+            raise BrokenFileError(DAMAGED.format("WebP"))
+        return "WEBP", *webp.size(data)
+    chunks = png.chunks(data)
+    header = next(chunks)[1]
+    if not any(name == b"IEND" for name, _ in chunks):
+        raise BrokenFileError(DAMAGED.format("PNG"))
+    width, height, depth, *_ = HEADER.unpack(header)
+    if depth > 8:
+        raise UnsupportedFormatError(
+            "This animated PNG has 16 bits per channel, which is not read: "
+            "save it with 8 bits, and upload the new file."
+        )
+    return "PNG", width, height
+
+
+def _images(data: bytes, file_format: str) -> Iterator[Image.Image]:
+    """The frames, composed: one image object that changes."""
+    file = io.BytesIO(data)
+    with Image.open(file, formats=[file_format]) as image:
+        yield from islice(_sought(image, file), 1 if getattr(image, "default_image", False) else 0, None)
+
+
+def _sought(image: Image.Image, file: io.BytesIO) -> Iterator[Image.Image]:
+    shown = 0
+    while True:
+        try:
+            image.seek(shown)
+        except EOFError:
+            break
+        yield image
+        shown += 1
+    # The number of a GIF's frames is nowhere in it: it ends with a mark. The others say theirs.
+    if image.format == "GIF":
+        whole = file.getvalue()[file.tell() - 1 : file.tell()] == TRAILER
+    else:
+        whole = shown == getattr(image, "n_frames", 0)
+    if not whole:
+        raise BrokenFileError(DAMAGED.format(image.format))
+
+
+def _pixels(image: Image.Image, size: tuple[int, int]) -> NDArray[np.uint8]:
+    pixels = np.asarray(image.convert("RGBA"))
+    if image.size != size:
+        raise BrokenFileError(DAMAGED.format(image.format))
+    return pixels
+
+
+def _is_grey(pixels: NDArray[np.uint8]) -> bool:
+    return np.array_equal(pixels[..., 0], pixels[..., 1]) and np.array_equal(pixels[..., 0], pixels[..., 2])

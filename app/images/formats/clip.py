@@ -1,0 +1,124 @@
+"""What every decoder of moving pictures gives back, and the limits they share."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from app.errors import TooLargeError
+from app.images.png import Pixels
+
+SLOWEST, FASTEST = 1.0, 120.0
+USUAL_RATE = 25.0
+ROUNDING = 0.0015  # seconds: of two times to milliseconds, and a little
+
+
+@dataclass(frozen=True)
+class ClipLimits:
+    """What a video may have: frames, seconds that it plays, pixels of all its frames together."""
+
+    frames: int
+    seconds: float
+    pixels: int
+
+
+class Frame(NamedTuple):
+    """``pixels`` (H, W, C) uint8, upright and in sRGB, C as `Clip.channels`; ``seconds`` is when it is shown."""
+
+    pixels: Pixels
+    seconds: float
+
+
+@dataclass(frozen=True)
+class Clip:
+    """A video whose ``frames`` are decoded while they are taken, once.
+
+    ``channels`` is 1 grey, 2 grey and alpha, 3 RGB, 4 RGB and alpha; ``media_type`` is what the file is.
+    """
+
+    width: int
+    height: int
+    channels: int
+    media_type: str
+    frames: Iterator[Frame]
+
+
+def check_clip(width: int, height: int, frames: int, seconds: float, limits: ClipLimits, *, more: bool = False) -> None:
+    """Refuse a video that has too much of anything.
+
+    Parameters
+    ----------
+    width, height : int
+        Of a frame.
+    frames : int
+    seconds : float
+        That it plays; 0 if unknown.
+    limits : ClipLimits
+    more : bool, optional
+        Whether it may go on after these.
+
+    Raises
+    ------
+    TooLargeError
+        With the limits, and how much shorter or smaller it has to be.
+
+    Examples
+    --------
+    >>> check_clip(1920, 1080, 72, 3.0, ClipLimits(frames=600, seconds=60, pixels=1 << 28))
+    """
+    area = width * height
+    if frames <= limits.frames and seconds <= limits.seconds and area * frames <= limits.pixels:
+        return
+    rate = frames / seconds if seconds else 0.0
+    short_enough = min(frames, limits.frames, int(limits.seconds * rate) if rate else frames)
+    few_enough = min(short_enough, limits.pixels // area)
+    advice = [f"trim it to its first {_length(few_enough, rate)}"] if few_enough > 1 else []
+    if few_enough < short_enough:
+        scale = (limits.pixels / (area * short_enough)) ** 0.5
+        smaller = f"{max(1, int(width * scale))} × {max(1, int(height * scale))} pixels"
+        rest = f" and trim it to its first {_length(short_enough, rate)}" if short_enough < frames or more else ""
+        advice.append(f"scale it to {smaller}{rest}")
+    raise TooLargeError(
+        f"The video has {'at least ' if more else ''}{_length(frames, rate)} of {width} × {height} pixels; at most "
+        f"{limits.frames:,} frames, {limits.seconds:g} seconds and {limits.pixels / 1e6:,.1f} megapixels "
+        f"(all frames together) are accepted. {', or '.join(advice).capitalize() or 'Trim it'}, and upload it again."
+    )
+
+
+def within(frames: Iterator[Frame], limits: ClipLimits) -> Iterator[Frame]:
+    """Pass on frames, and refuse the first that is too much: what a file says of its length may be a lie.
+
+    Raises
+    ------
+    TooLargeError
+        As `check_clip`.
+    """
+    start = None
+    for count, frame in enumerate(frames, 1):
+        start = frame.seconds if start is None else start
+        height, width = frame.pixels.shape[:2]
+        check_clip(width, height, count, frame.seconds - start, limits, more=True)
+        yield frame
+
+
+def rate_of(seconds: Sequence[float]) -> float:
+    """Frames a second, from when each is shown: the average, within 1 and 120; 0 of a single frame.
+
+    A usual rate is taken for what differs from it by the rounding of times to milliseconds alone.
+
+    Examples
+    --------
+    >>> rate_of([0.0]), rate_of([0.0, 0.033, 0.067, 0.1]), rate_of([0.0, 0.4, 0.5])
+    (0.0, 30.0, 4.0)
+    """
+    if len(seconds) < 2:
+        return 0.0
+    intervals, span = len(seconds) - 1, seconds[-1] - seconds[0]
+    rate = intervals / span if span > 0 else USUAL_RATE
+    usual = min((float(round(rate)), round(rate) / 1.001), key=lambda each: abs(each - rate))
+    if usual and abs(intervals / usual - span) <= ROUNDING:
+        rate = usual
+    return round(min(FASTEST, max(SLOWEST, rate)), 3)
+
+
+def _length(frames: int, rate: float) -> str:
+    return f"{frames:,} frames" + (f" ({frames / rate:.1f} seconds)" if rate else "")

@@ -1,0 +1,239 @@
+"""Videos: MP4 and QuickTime with H.264, WebM and Matroska with VP8, VP9 or AV1; the picture only, never sound or text.
+
+The numbers become RGB by the matrix and the range that the stream names (where it names none: BT.601 below 720 lines,
+otherwise BT.709; limited range) and count as sRGB; more than 8 bits become 8. Frames are turned upright; pixels that
+are not square are made so by enlarging one axis. The rate is the average one. What is interlaced stays so.
+"""
+
+import io
+import struct
+from collections.abc import Iterator
+from contextlib import contextmanager
+from fractions import Fraction
+
+import av
+import numpy as np
+from av.codec.context import CodecContext
+from av.container import InputContainer
+from av.error import FFmpegError
+from av.sidedata.sidedata import SideData
+from av.stream import Disposition
+from av.video.codeccontext import VideoCodecContext
+from av.video.frame import VideoFrame
+from av.video.reformatter import ColorRange, Colorspace, ColorTrc, Interpolation, VideoReformatter
+from av.video.stream import VideoStream
+
+from app.errors import BrokenFileError, UnsupportedFormatError
+from app.images.formats.clip import USUAL_RATE, Clip, ClipLimits, Frame, check_clip, within
+from app.images.formats.containers import Container
+from app.images.formats.raw import check_size, is_opaque, upright
+
+NAME = "video"
+DAMAGED = (
+    "This video is damaged or incomplete: see whether it plays to its end, save it again as MP4 with H.264, "
+    "and upload the new file."
+)
+# By the name of the codec: which decoder reads the alpha channel too, where another is the better one without.
+CODECS = {"h264": None, "vp8": "libvpx", "vp9": "libvpx-vp9", "av1": None}
+DECODERS = "h264,vp8,vp9,libvpx,libvpx-vp9,libdav1d,av1"
+THREADS = 2
+# Without the last two, chroma is not interpolated and every channel is one or two levels of 255 too dark.
+SCALING = Interpolation.BILINEAR | Interpolation.ACCURATE_RND | Interpolation.FULL_CHR_H_INT
+RGB, UNSPECIFIED = 0, 2  # of the matrix coefficients of ITU-T H.273, as are the keys
+MATRICES = {
+    1: Colorspace.ITU709,
+    4: Colorspace.FCC,
+    5: Colorspace.ITU601,
+    6: Colorspace.ITU601,
+    7: Colorspace.SMPTE240M,
+    9: Colorspace.BT2020,
+}
+HD_LINES = 720
+HIGH_DYNAMIC_RANGE = (ColorTrc.SMPTE2084, ColorTrc.ARIB_STD_B67)
+OBLONG = 4  # pixels said to be so much wider than high, or higher than wide, are a mistake
+DISPLAY_MATRIX = struct.Struct("=9i")
+# By whether the axes are exchanged, then x and then y mirrored: EXIF's orientation.
+ORIENTATIONS = {
+    (False, False, False): 1,
+    (False, True, False): 2,
+    (False, True, True): 3,
+    (False, False, True): 4,
+    (True, False, False): 5,
+    (True, True, False): 6,
+    (True, True, True): 7,
+    (True, False, True): 8,
+}
+
+av.logging.set_level(None)  # FFmpeg would say on standard error what is wrong with every broken file
+
+
+def decode(data: bytes, container: Container, max_pixels: int, limits: ClipLimits) -> Clip:
+    """Read a video; its frames are decoded while they are taken, and the errors below may come as late as that.
+
+    Raises
+    ------
+    UnsupportedFormatError
+        If it has no picture, or one that is not of these codecs, or is HDR.
+    BrokenFileError
+        If it is truncated or damaged, or its frames change their size.
+    TooLargeError
+        If it has more pixels, frames or seconds than the limits allow.
+    """
+    if not container.whole:
+        raise BrokenFileError(DAMAGED)
+    film = _Film(data, container, max_pixels, limits)
+    channels = film.channels
+    if channels == 4 and all(is_opaque(frame.pixels[..., 3]) for frame in film.frames(4)):
+        channels = 3
+    return Clip(film.width, film.height, channels, container.media_type, film.frames(channels))
+
+
+class _Film:
+    """A file's video track, which may be decoded several times; how its frames become pixels is told by the first."""
+
+    def __init__(self, data: bytes, container: Container, max_pixels: int, limits: ClipLimits) -> None:
+        self._data, self._demuxer, self._max_pixels, self._limits = data, container.demuxer, max_pixels, limits
+        with _telling(), self._open() as opened:
+            stream = _stream(opened)
+            self._check(opened, stream)
+            self._rate = float(stream.average_rate or USUAL_RATE)
+            aspect = stream.sample_aspect_ratio
+            first = next(_decoded(opened, stream, self._decoder(stream)), None)
+        if first is None:
+            raise BrokenFileError(DAMAGED)
+        if first.color_trc in HIGH_DYNAMIC_RANGE:
+            raise UnsupportedFormatError(
+                "This video is HDR, whose colours a texture of ordinary range cannot hold: "
+                "save it as SDR, MP4 with H.264, and upload the new file."
+            )
+        self._coded = first.width, first.height
+        self._scaled = _squared(first.width, first.height, aspect)
+        check_size(*self._scaled, max_pixels, NAME)
+        self._matrix = _matrix(first)
+        self._range = ColorRange.JPEG if first.color_range == ColorRange.JPEG else ColorRange.MPEG
+        self._orientation = _orientation(first)
+        self.width, self.height = self._scaled[::-1] if self._orientation > 4 else self._scaled
+        name = first.format.name
+        self.channels = 1 if name.startswith("gray") else 4 if name.startswith("yuva") else 3
+
+    def frames(self, channels: int) -> Iterator[Frame]:
+        return within(self._frames(channels), self._limits)
+
+    def _frames(self, channels: int) -> Iterator[Frame]:
+        reformatter, (width, height) = VideoReformatter(), self._scaled
+        with _telling(), self._open() as opened:
+            stream = _stream(opened)
+            for index, frame in enumerate(_decoded(opened, stream, self._decoder(stream))):
+                if (frame.width, frame.height) != self._coded:
+                    raise BrokenFileError(
+                        "The frames of this video change their size on the way: "
+                        "save it again as MP4 with H.264, and upload the new file."
+                    )
+                picture = reformatter.reformat(
+                    frame,
+                    width,
+                    height,
+                    {1: "gray", 3: "rgb24", 4: "rgba"}[channels],
+                    src_colorspace=self._matrix,
+                    src_color_range=self._range,
+                    dst_color_range=ColorRange.JPEG,
+                    interpolation=SCALING,
+                    threads=1,
+                )
+                pixels = picture.to_ndarray().reshape(height, width, channels).view(np.uint8)
+                seconds = index / self._rate if frame.pts is None else float(frame.pts * (stream.time_base or 1))
+                yield Frame(upright(pixels, self._orientation), seconds)
+
+    def _open(self) -> InputContainer:
+        # The demuxer is named and no protocol allowed: nothing but these bytes is opened, whatever they refer to.
+        return av.open(
+            io.BytesIO(self._data),
+            "r",
+            format=self._demuxer,
+            options={"protocol_whitelist": "", "codec_whitelist": DECODERS, "max_pixels": str(self._max_pixels)},
+            metadata_errors="replace",
+        )
+
+    def _check(self, opened: InputContainer, stream: VideoStream) -> None:
+        """Refuse what is too much by what the headers say, before a frame is decoded."""
+        width, height = stream.width or 1, stream.height or 1
+        check_size(width, height, self._max_pixels, NAME)
+        if stream.duration and stream.time_base:
+            seconds = float(stream.duration * stream.time_base)
+        else:
+            seconds = (opened.duration or 0) / av.time_base
+        check_clip(width, height, round(seconds * float(stream.average_rate or 0)), seconds, self._limits)
+
+    def _decoder(self, stream: VideoStream) -> VideoCodecContext:
+        codec: CodecContext = stream.codec_context
+        with_alpha = CODECS[codec.codec.canonical_name]
+        if with_alpha and stream.metadata.get("alpha_mode") == "1":
+            codec = CodecContext.create(with_alpha, "r")
+        assert isinstance(codec, VideoCodecContext)
+        codec.options = {"err_detect": "explode", "max_pixels": str(self._max_pixels)}
+        codec.thread_count, codec.thread_type = THREADS, "AUTO"
+        return codec
+
+
+@contextmanager
+def _telling() -> Iterator[None]:
+    try:
+        yield
+    except MemoryError:  # FFmpeg's is one of its own errors, too
+        raise
+    except FFmpegError as error:
+        raise BrokenFileError(DAMAGED) from error
+
+
+def _stream(opened: InputContainer) -> VideoStream:
+    """Find the first picture that moves and can be decoded."""
+    streams = [each for each in opened.streams.video if not each.disposition & Disposition.attached_pic]
+    if not streams:
+        raise UnsupportedFormatError("This file holds no moving picture: upload a video, or a picture as PNG or JPEG.")
+    context = streams[0].codec_context
+    name = context.codec.canonical_name if context else "something unknown"
+    if name not in CODECS:
+        raise UnsupportedFormatError(
+            f"This video is coded as {name.upper()}, which is not read: "
+            "save it as MP4 with H.264, and upload the new file."
+        )
+    return streams[0]
+
+
+def _decoded(opened: InputContainer, stream: VideoStream, codec: VideoCodecContext) -> Iterator[VideoFrame]:
+    packets = 0
+    for packet in opened.demux(stream):
+        packets += packet.size > 0
+        for frame in codec.decode(packet if packet.size else None):
+            if packet.is_corrupt or frame.is_corrupt:
+                raise BrokenFileError(DAMAGED)
+            yield frame
+    if packets < len(stream.index_entries):
+        raise BrokenFileError(DAMAGED)
+
+
+def _squared(width: int, height: int, aspect: Fraction | None) -> tuple[int, int]:
+    """Size with square pixels, no axis smaller than it was."""
+    if not aspect or not 1 / OBLONG <= aspect <= OBLONG:
+        return width, height
+    return (round(width * aspect), height) if aspect > 1 else (width, round(height / aspect))
+
+
+def _matrix(frame: VideoFrame) -> Colorspace:
+    if frame.colorspace in (RGB, UNSPECIFIED):
+        return Colorspace.ITU601 if frame.height < HD_LINES else Colorspace.ITU709
+    if frame.colorspace not in MATRICES:
+        raise UnsupportedFormatError(
+            "This video has colours of a kind that is not read: save it as MP4 with H.264, and upload the new file."
+        )
+    return MATRICES[frame.colorspace]
+
+
+def _orientation(frame: VideoFrame) -> int:
+    """EXIF's number for what the display matrix says; ``x' = a x + c y`` and ``y' = b x + d y``."""
+    matrix = frame.side_data.get("DISPLAYMATRIX")
+    if not isinstance(matrix, SideData) or matrix.buffer_size != DISPLAY_MATRIX.size:
+        return 1
+    a, b, _, c, d, *_ = DISPLAY_MATRIX.unpack(bytes(matrix))
+    exchanged = abs(b) + abs(c) > abs(a) + abs(d)
+    return ORIENTATIONS[exchanged, (c if exchanged else a) < 0, (b if exchanged else d) < 0]
