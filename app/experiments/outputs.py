@@ -7,12 +7,11 @@ from typing import Literal
 from app.errors import AppError, BusyError, InvalidInputError, NotFoundError
 from app.experiments.following import Following
 from app.experiments.model import Experiment, Output
-from app.experiments.pictures import DERIVED, Pictures
+from app.experiments.pictures import DERIVED, FilmFormat, Pictures
 from app.experiments.ports import BlobStore, Executor, ExperimentStore
 from app.experiments.run import DEEP, DEEP_TEXTURE
 from app.images.convert import Format
 
-FilmFormat = Literal["webm", "mp4"]
 AnyFormat = Format | FilmFormat
 MP4_SUFFIX = "-mp4"  # ends the name of a film's second file: see `app.methods.films`
 DEEP_SECONDS = 120.0  # how long a download waits for its texture at 16 bits

@@ -6,6 +6,8 @@ from textwrap import fill
 from typing import Any
 
 from app.experiments.model import Experiment
+from app.images.crop import Frames
+from app.methods.registry import METHODS
 
 WIDTH = 76  # characters of a line
 JOINED = "\N{NO-BREAK SPACE}"  # where no line is broken
@@ -22,8 +24,8 @@ def snippets(experiment: Experiment, base_url: str) -> tuple[tuple[str, str], ..
     """
     files = _files(experiment)
     fetch = "".join(
-        f"curl -fsS -o {name} {shlex.quote(f'{base_url}/api/v1/samples/{sample}/image')}\n"
-        for sample, name in files.items()
+        f"curl -fsS -o {name} {shlex.quote(f'{base_url}/api/v1/samples/{address}')}\n"
+        for address, name in files.items()
     )
     return (
         ("curl", fetch + _curl(experiment, base_url, files)),
@@ -32,10 +34,31 @@ def snippets(experiment: Experiment, base_url: str) -> tuple[tuple[str, str], ..
     )
 
 
+def _addresses(experiment: Experiment) -> list[str]:
+    """Where the exact pixels of each input's sample are: all of a clip, or one picture."""
+    method = METHODS[experiment.method]
+    addresses = []
+    for index, source in enumerate(experiment.inputs):
+        if method.slot(index).moving:
+            addresses.append(f"{source.sample}/video?format=webm")
+        elif source.frames.first:
+            addresses.append(f"{source.sample}/image?frame={source.frames.first}")
+        else:
+            addresses.append(f"{source.sample}/image")
+    return addresses
+
+
 def _files(experiment: Experiment) -> dict[str, str]:
-    """Name a file for each sample, by its id; a sample of which there are two crops is fetched once."""
-    ids = dict.fromkeys(source.sample for source in experiment.inputs)
-    return {sample: "sample.png" if number == 1 else f"sample-{number}.png" for number, sample in enumerate(ids, 1)}
+    """Name a file for each sample, by its address; a sample of which there are two crops is fetched once."""
+    suffixes = {address: ".webm" if "/video" in address else ".png" for address in _addresses(experiment)}
+    return {
+        address: f"sample{suffix}" if number == 1 else f"sample-{number}{suffix}"
+        for number, (address, suffix) in enumerate(suffixes.items(), 1)
+    }
+
+
+def _texture(experiment: Experiment) -> str:
+    return "texture.webm" if METHODS[experiment.method].moving else "texture.png"
 
 
 def _said(parameters: dict[str, Any]) -> dict[str, Any]:
@@ -48,21 +71,28 @@ def _form(value: Any) -> str:
 
 def _curl(experiment: Experiment, base_url: str, files: dict[str, str]) -> str:
     entries: dict[str, Any] = {"method": experiment.method}
-    for number, source in enumerate(experiment.inputs, 1):
-        suffix = "" if number == 1 else f"-{number}"
-        entries |= {f"file{suffix}": f"@{files[source.sample]}", f"crop{suffix}": source.crop}
+    method = METHODS[experiment.method]
+    for index, (source, sample) in enumerate(zip(experiment.inputs, _addresses(experiment), strict=True)):
+        suffix = f"-{index + 1}" if index else ""
+        entries |= {f"file{suffix}": f"@{files[sample]}", f"crop{suffix}": source.crop}
+        if method.slot(index).moving:
+            entries[f"time{suffix}"] = source.frames
     entries |= _said(dict(experiment.parameters))
     words = [f"-F {shlex.quote(f'{name}={_form(value)}')}" for name, value in entries.items()]
     address = shlex.quote(f"{base_url}/api/v1/synthesize")
-    return _wrapped(["curl -fsS -o texture.png", address, *words])
+    return _wrapped([f"curl -fsS -o {_texture(experiment)}", address, *words])
 
 
 def _command(experiment: Experiment, files: dict[str, str]) -> str:
     parameters = _said(dict(experiment.parameters))
     size = f"{parameters.pop('width')}x{parameters.pop('height')}"
-    names = " ".join(files[source.sample] for source in experiment.inputs)
-    words = [f"microtexture synthesize {names} texture.png", f"--method {experiment.method}"]
+    names = " ".join(files[address] for address in _addresses(experiment))
+    words = [f"microtexture synthesize {names} {_texture(experiment)}", f"--method {experiment.method}"]
     words += [f"--crop {source.crop}" for source in experiment.inputs]
+    moving = [METHODS[experiment.method].slot(index).moving for index in range(len(experiment.inputs))]
+    if any(moving):  # a still input's file has one frame
+        times = [source.frames if moves else Frames() for source, moves in zip(experiment.inputs, moving, strict=True)]
+        words += [f"--time {frames}" for frames in times]
     words.append(f"--size {size}")
     for name, value in parameters.items():
         option = name.replace("_", "-")
@@ -84,10 +114,14 @@ def _wrapped(words: list[str]) -> str:
 
 
 def _python(experiment: Experiment, base_url: str) -> str:
-    sources = "".join(
-        f'        {{"sample": {_literal(source.sample)},\n         "crop": {_literal(vars(source.crop))}}},\n'
-        for source in experiment.inputs
-    )
+    moving = METHODS[experiment.method].moving
+    sources = ""
+    for source in experiment.inputs:
+        said = {"sample": source.sample, "crop": vars(source.crop)}
+        if moving or source.frames.first:
+            said["frames"] = vars(source.frames)
+        lines = ",\n         ".join(f"{_literal(name)}: {_literal(value)}" for name, value in said.items())
+        sources += f"        {{{lines}}},\n"
     together = f'"parameters": {_literal(_said(dict(experiment.parameters)))}'.replace(": ", f":{JOINED}")
     parameters = fill(together, WIDTH, initial_indent=" " * 4, subsequent_indent=" " * 8).replace(JOINED, " ")
     return f"""import time
@@ -111,7 +145,7 @@ with httpx.Client(base_url={_literal(base_url)}, timeout=60) as service:
         time.sleep(1)
         experiment = service.get(address).raise_for_status().json()
     texture = service.get(f"{{address}}/outputs/texture").raise_for_status()
-with open("texture.png", "wb") as file:
+with open({_literal(_texture(experiment))}, "wb") as file:
     file.write(texture.content)
 """
 
