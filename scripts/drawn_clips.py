@@ -38,24 +38,26 @@ METRES = 0.002  # of a pixel: the ripples in the sand are then 10 cm apart
 DEPTH = 0.4  # metres of water
 REFRACTION = 1 - 1 / 1.33  # a ray from straight above is turned by this part of the surface's slope
 GRAVITY, TENSION = 9.81, 7.3e-5  # m/s²; m³/s², surface tension by density
-SLOPE = 0.15  # of the water, root mean square
+SLOPE = 0.12  # of the water, root mean square
+SLOWER = 3  # than it went: the camera took 72 frames a second
+SUN = 80  # pixels that its rays, about 40° off the vertical, go on along each axis in the water
 MARGIN = 48  # pixels around the picture from which light and sight may come
 RAYS = 3  # along a pixel's side
 
 
 def sand_under_water() -> Iterator[Real]:
-    """Rippled sand under forty centimetres of clear water in a breeze, the sun straight above.
+    """Rippled sand under forty centimetres of clear water in a breeze.
 
     The surface is a sum of travelling waves with the dispersion relation of water, ω² = (g k + τ k³) tanh(k h). Its
-    slope bends the light that falls in, which gathers in bright lines on the sand, and the view of the sand.
+    slope bends the sun's light, which gathers in bright lines on the sand, and, at another place, the view of the sand.
     """
     rng = np.random.default_rng(11)
     count = 60
-    k = 2 * np.pi / np.exp(rng.uniform(np.log(0.09), np.log(0.7), count))  # radians a metre
+    k = 2 * np.pi / np.exp(rng.uniform(np.log(0.06), np.log(0.5), count))  # radians a metre
     towards = rng.normal(0.6, 1.1, count)
     omega = np.sqrt((GRAVITY * k + TENSION * k**3) * np.tanh(k * DEPTH))
     phase = rng.uniform(0, 2 * np.pi, count)
-    slope = SLOPE * np.sqrt(2 / count) * (k / k.min()) ** -0.3
+    slope = SLOPE * np.sqrt(2 / (k * np.sum(1 / k)))
     side = SIDE + 2 * MARGIN
     sand = _photograph("sand_desert009.png")[352 : 352 + side, 96 : 96 + side]
     ray = (np.arange(RAYS * side) + 0.5) / RAYS - 0.5
@@ -71,12 +73,12 @@ def sand_under_water() -> Iterator[Real]:
 
     view = np.arange(side, dtype=float)
     for frame in range(FRAMES):
-        t = frame / RATE
-        fallen = np.rint(shift(ray, t) + rays).astype(np.intp).clip(0, side - 1)
+        t = frame / RATE / SLOWER
+        fallen = np.rint(shift(ray + SUN, t) + rays).astype(np.intp).clip(0, side - 1)
         light = np.bincount(np.ravel_multi_index(fallen, (side, side)).ravel(), minlength=side**2)
         # The sun's disc, half a degree wide, blurs its picture at this depth by about a pixel.
         sun = gaussian_filter(light.reshape(side, side) / RAYS**2, 0.9)
-        lit = sand * (0.5 + 0.6 * np.log1p(sun))[:, :, None] * (0.88, 1.02, 1.06)
+        lit = sand * (0.5 + 0.6 * np.log1p(sun))[:, :, None] * (0.88, 1.03, 1.08)
         y, x = shift(view, t) + _grid(side)
         inside = slice(MARGIN, MARGIN + SIDE)
         yield _look(_splines(lit), y[inside, inside], x[inside, inside])
@@ -163,7 +165,7 @@ def _look(splines: Real, y: Real, x: Real, mode: str = "mirror") -> Real:
 def write(path: Path, frames: Iterator[Real]) -> None:
     """An H.264 film that every browser plays."""
     with av.open(str(path), "w") as container:
-        stream = container.add_stream("libx264", rate=RATE, options={"crf": "15", "preset": "slow"})
+        stream = container.add_stream("libx264", rate=RATE, options={"crf": "16", "preset": "slow"})
         stream.width = stream.height = SIDE
         stream.pix_fmt = "yuv420p"
         coder = stream.codec_context
