@@ -5,10 +5,10 @@ is at least some share s, d(x, p_i) ≤ T_s(x) with a distance T_s that depends 
 comparing distances.
 """
 
-from collections.abc import Callable, Iterable
-from functools import lru_cache
-from math import ceil
-from typing import Any, NamedTuple
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from functools import lru_cache, reduce
+from math import ceil, hypot
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,18 +16,21 @@ from numpy.typing import NDArray
 REACH = 3.0  # spacings after which a weight is 0
 JITTER = 0.75  # of its square's side, in which a centre lies
 LATTICE = 8  # points along a spacing
-AT_ONCE = 1 << 20  # distances that are held at once
-NEAR = 2  # squares each way whose centres make up all but nothing of Σ w²
+AT_ONCE = 1 << 18  # points that are looked at together
+NEAR = 2  # spacings within which centres make up nearly all of Σ w²
 ROUNDING = 2  # pixels that a centre may be off for lying on a whole one
+
+LEAST_SQUARE = np.float32(1e-6)  # of a distance, to take logarithms of
 
 Ints = NDArray[np.int64]
 Real = NDArray[np.float32]
 
 
-class Axis(NamedTuple):
-    """Squares of the grid along one axis, ``beyond`` of them before the plane and as many behind it.
+@dataclass(frozen=True)
+class Axis:
+    """Squares of the grid along one axis: ``count`` in the plane, ``beyond`` more before it and as many behind it.
 
-    ``edges`` are the first pixels of all squares, and the end of the last; ``size`` is the plane's.
+    ``size`` is the plane's, in pixels.
     """
 
     size: int
@@ -35,30 +38,37 @@ class Axis(NamedTuple):
     beyond: int
 
     @property
-    def edges(self) -> Ints:
-        return np.arange(-self.beyond, self.count + self.beyond + 1) * self.size // self.count
-
-    @property
     def spacing(self) -> float:
         return self.size / self.count
 
     @property
-    def points(self) -> Ints:
-        """Pixels at which shapes are found out, shape (count, points of a square); some come twice."""
-        first, last = self.edges[self.beyond : -self.beyond - 1, None], self.edges[self.beyond + 1 : -self.beyond, None]
-        along = max(1, min(LATTICE, ceil(self.spacing)))
-        return first + np.arange(along) * (last - first) // along
-
-    @property
-    def step(self) -> int:
-        """Most pixels from a point to the next."""
-        return ceil(ceil(self.spacing) / self.points.shape[1])
+    def edges(self) -> Ints:
+        """First pixels of all squares, and the end of the last."""
+        edges: Ints = np.arange(-self.beyond, self.count + self.beyond + 1) * self.size // self.count
+        return edges
 
     def jittered(self, jitter: NDArray[np.float64], axis: int) -> Ints:
         """Places in the squares along ``axis`` of an array of numbers of [0, 1)."""
         shape = (-1, 1) if axis == 0 else (1, -1)
         first, length = self.edges[:-1].reshape(shape), np.diff(self.edges).reshape(shape)
-        return first + (length * ((1 - JITTER) / 2 + JITTER * jitter)).astype(np.int64)
+        places: Ints = first + (length * ((1 - JITTER) / 2 + JITTER * jitter)).astype(np.int64)
+        return places
+
+    def points(self) -> Ints:
+        """Pixels at which shapes are found out, shape (points of a square, count); some come twice."""
+        edges = self.edges[self.beyond : self.beyond + self.count + 1]
+        along = min(LATTICE, ceil(self.spacing))
+        points: Ints = edges[:-1] + np.arange(along)[:, None] * np.diff(edges) // along
+        return points
+
+    @property
+    def step(self) -> int:
+        """Most pixels from a point to the next."""
+        return ceil(ceil(self.spacing) / LATTICE)
+
+    def gap(self, offset: int) -> float:
+        """Pixels that a centre is away at least from points of a square so many squares before or behind its own."""
+        return max(0.0, (abs(offset) - 1 + (1 - JITTER) / 2) * self.spacing - ROUNDING)
 
 
 def thresholds(squares: Callable[[], Iterable[Real]], sharpness: float, shares: tuple[float, ...]) -> list[Real]:
@@ -72,10 +82,8 @@ def thresholds(squares: Callable[[], Iterable[Real]], sharpness: float, shares: 
     shares : tuple of float
         1 means the largest part of all.
     """
-    nearest: Any = None
-    for square in squares():
-        nearest = square.copy() if nearest is None else np.minimum(nearest, square, out=nearest)
-    np.maximum(nearest, np.float32(1e-6), out=nearest)
+    nearest = reduce(np.minimum, squares())
+    np.maximum(nearest, LEAST_SQUARE, out=nearest)
     half, logs = np.float32(sharpness / 2), np.log(nearest)
     shoulder = np.exp((logs - np.float32(2 * np.log(REACH))) * half)
     norm = np.zeros_like(nearest)
@@ -89,7 +97,7 @@ def thresholds(squares: Callable[[], Iterable[Real]], sharpness: float, shares: 
     found = []
     for share in shares:
         least = shoulder + np.float32(share) * norm
-        found.append(nearest.copy() if share == 1 else nearest * least ** np.float32(-2 / sharpness))
+        found.append(nearest if share == 1 else nearest * least ** np.float32(-2 / sharpness))
     return found
 
 
@@ -103,87 +111,93 @@ def farthest(sharpness: float, share: float) -> float:
     low, high = np.float32((1 - JITTER) / 2), np.float32((1 + JITTER) / 2)
 
     def squares() -> Iterable[Real]:
-        away = [np.maximum(np.abs(x - (k + low)), np.abs(x - (k + high))) ** 2 for k in range(-NEAR, NEAR + 1)]
+        away = [np.maximum(np.abs(x - (k + low)), np.abs(x - (k + high))) ** 2 for k in range(-2, 3)]
         return (dy[:, None] + dx[None, :] for dy in away for dx in away)
 
     return float(np.sqrt(thresholds(squares, sharpness, (share,))[0].max()))
 
 
-def extents(
-    rows: Axis, columns: Axis, y: Ints, x: Ints, unit: float, sharpness: float, shares: tuple[float, ...]
-) -> Ints:
+class _Band:
+    """Points of some rows of squares, and how far centres are from them."""
+
+    def __init__(self, axes: tuple[Axis, Axis], points: tuple[Ints, Ints], first: int, y: Ints, x: Ints) -> None:
+        self._axes, self._first = axes, first
+        self._y, self._x = y, x
+        self._rows, self._columns = points[0][:, :, None], points[1][:, None, :]
+        self._unit = max(axis.spacing for axis in axes)
+
+    def around(self, distance: float) -> Iterator[tuple[int, int]]:
+        """Offsets of squares, in rows and columns, whose centres may be nearer than a distance in spacings."""
+        rows, columns = self._axes
+        for dr in range(-rows.beyond, rows.beyond + 1):
+            for dc in range(-columns.beyond, columns.beyond + 1):
+                if hypot(rows.gap(dr), columns.gap(dc)) <= distance * self._unit:
+                    yield dr, dc
+
+    def squares(self, dr: int, dc: int) -> tuple[slice, slice]:
+        """Where the squares at an offset are in arrays over all squares."""
+        top, left = self._first + self._axes[0].beyond + dr, self._axes[1].beyond + dc
+        return slice(top, top + self._rows.shape[1]), slice(left, left + self._columns.shape[2])
+
+    def away(self, dr: int, dc: int) -> tuple[Real, Real]:
+        """Pixels from the centre at an offset to each row, shape (points, R, C), and to each column of points."""
+        where = self.squares(dr, dc)
+        return (self._rows - self._y[where]).astype(np.float32), (self._columns - self._x[where]).astype(np.float32)
+
+    def distances(self, dy: Real, dx: Real) -> Real:
+        """Squared distances in spacings, shape (points along y, points along x, R, C)."""
+        scale = np.float32(1 / self._unit)
+        square: Real = ((dy * scale) ** 2)[:, None] + ((dx * scale) ** 2)[None, :]
+        return square
+
+    def near(self) -> Iterator[Real]:
+        """Those to the centres that matter most."""
+        return (self.distances(*self.away(*offset)) for offset in self.around(NEAR))
+
+
+def extents(rows: Axis, columns: Axis, y: Ints, x: Ints, sharpness: float, shares: tuple[float, ...]) -> Real:
     """Boxes relative to the centres, outside of which their parts of the plane's pixels are less than a share.
 
     Parameters
     ----------
     rows, columns : Axis
-    y, x : ndarray of int64, shape (rows, columns) of squares
+    y, x : ndarray of int64, shape (squares along the rows' axis, squares along the columns' axis)
         The centres.
-    unit, sharpness : float
+    sharpness : float
     shares : tuple of float
+        See `thresholds`.
 
     Returns
     -------
-    ndarray of int64, shape (shares, rows, columns, 4)
-        Top, bottom, left, right; the last two pairs' ends are one past. All 0 where a centre has no such pixel.
+    ndarray of float32, shape (shares, 4, *y.shape)
+        Top, bottom, left, right, bottom and right being one past the last; infinite, top and left greater than bottom
+        and right, where a centre has no such pixel.
     """
-    out = np.zeros((len(shares), *y.shape, 4), np.int64)
-    empty = np.iinfo(np.int64).max // 2
-    out[..., ::2], out[..., 1::2] = empty, -empty
-    at_y, at_x = rows.points, columns.points
-    chunk = max(1, AT_ONCE // (at_y.shape[1] * at_x.size))
+    points = rows.points(), columns.points()
+    steps = rows.step, columns.step
+    boxes = np.empty((len(shares), 4, *y.shape), np.float32)
+    boxes[:, ::2], boxes[:, 1::2] = np.inf, -np.inf
+    chunk = max(1, AT_ONCE // (len(points[0]) * points[1].size))
     for first in range(0, rows.count, chunk):
-        _extend(out, rows, columns, y, x, unit, sharpness, shares, slice(first, min(first + chunk, rows.count)))
-    nothing = out[..., :1] == empty
-    for side, step in enumerate((rows.step, rows.step, columns.step, columns.step)):
-        out[..., side] += (step if side % 2 else 1 - step) if step > 1 else side % 2
-    limits = np.array([ceil(farthest(sharpness, share) * unit) + ROUNDING for share in shares])[:, None, None, None]
-    out[..., ::2] = np.maximum(out[..., ::2], -limits)
-    out[..., 1::2] = np.minimum(out[..., 1::2], limits + 1)
-    return np.where(nothing, 0, out)
+        band = _Band((rows, columns), (points[0][:, first : first + chunk], points[1]), first, y, x)
+        limits = thresholds(band.near, sharpness, shares)
+        for share, limit, box in zip(shares, limits, boxes, strict=True):
+            for offset in band.around(farthest(sharpness, share)):
+                where, away = band.squares(*offset), band.away(*offset)
+                inside = band.distances(*away) <= limit
+                for axis, (d, step) in enumerate(zip(away, steps, strict=True)):
+                    hit = inside.any(axis=1 - axis)
+                    low, high = box[2 * axis][where], box[2 * axis + 1][where]
+                    np.minimum(low, np.where(hit, d - (step - 1), np.inf).min(axis=0), out=low)
+                    np.maximum(high, np.where(hit, d + step, -np.inf).max(axis=0), out=high)
+    unit = max(rows.spacing, columns.spacing)
+    for share, box in zip(shares, boxes, strict=True):
+        pixels = reach(unit, sharpness, share)
+        np.maximum(box[::2], -pixels, out=box[::2])
+        np.minimum(box[1::2], pixels + 1, out=box[1::2])
+    return boxes
 
 
-def _extend(
-    out: Ints,
-    rows: Axis,
-    columns: Axis,
-    y: Ints,
-    x: Ints,
-    unit: float,
-    sharpness: float,
-    shares: tuple[float, ...],
-    band: slice,
-) -> None:
-    """Let the boxes hold the points of a band of squares."""
-    at_y, at_x = rows.points[band], columns.points
-    height, width = len(at_y), len(at_x)
-
-    def away(dr: int, dc: int) -> tuple[tuple[slice, slice], Ints, Ints]:
-        top, left = band.start + rows.beyond + dr, columns.beyond + dc
-        where = (slice(top, top + height), slice(left, left + width))
-        return where, at_y[:, None, :] - y[where][:, :, None], at_x[None, :, :] - x[where][:, :, None]
-
-    def square(dy: Ints, dx: Ints) -> Real:
-        scaled_y, scaled_x = ((d * np.float32(1 / unit)).astype(np.float32) ** 2 for d in (dy, dx))
-        total: Real = scaled_y[:, :, :, None] + scaled_x[:, :, None, :]
-        return total
-
-    near_rows, near_columns = min(rows.beyond, NEAR), min(columns.beyond, NEAR)
-
-    def squares() -> Iterable[Real]:
-        for dr in range(-near_rows, near_rows + 1):
-            for dc in range(-near_columns, near_columns + 1):
-                yield square(*away(dr, dc)[1:])
-
-    limits = thresholds(squares, sharpness, shares)
-    empty = np.iinfo(np.int64).max // 2
-    for dr in range(-rows.beyond, rows.beyond + 1):
-        for dc in range(-columns.beyond, columns.beyond + 1):
-            where, dy, dx = away(dr, dc)
-            d2 = square(dy, dx)
-            for boxes, limit in zip(out, limits, strict=True):
-                inside = d2 <= limit
-                for side, d, hit in ((0, dy, inside.any(3)), (2, dx, inside.any(2))):
-                    box = boxes[where]
-                    np.minimum(box[:, :, side], np.where(hit, d, empty).min(2), out=box[:, :, side])
-                    np.maximum(box[:, :, side + 1], np.where(hit, d, -empty).max(2), out=box[:, :, side + 1])
+def reach(unit: float, sharpness: float, share: float) -> int:
+    """`farthest` in pixels, for centres on whole ones."""
+    return ceil(farthest(sharpness, share) * unit) + ROUNDING

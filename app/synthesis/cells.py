@@ -26,7 +26,7 @@ import numpy as np
 from numpy.random import SFC64, Generator, SeedSequence
 from numpy.typing import NDArray
 
-from app.synthesis.cell_shapes import REACH, ROUNDING, Axis, extents, farthest
+from app.synthesis.cell_shapes import REACH, Axis, extents, reach
 
 LEFT_OUT = 1 / 512  # of a pixel: a part that is smaller changes an 8-bit value by less than a half
 BLEND = 1 / 16  # of a pixel: a cell's blend zone is where its part is larger
@@ -220,7 +220,8 @@ def least_sample(height: int, width: int, grid: int, sharpness: float) -> int:
     >>> least_sample(512, 512, grid=64, sharpness=6) <= 256
     True
     """
-    return 2 * (ceil(farthest(sharpness, BLEND) * max(_spacings(height, width, grid))) + ROUNDING) + 1
+    unit = max(axis.spacing for axis in _axes(height, width, grid, sharpness))
+    return 2 * reach(unit, sharpness, BLEND) + 1
 
 
 def jittered_cells(height: int, width: int, *, grid: int, sharpness: float, tileable: bool, seed: int) -> Cells:
@@ -245,32 +246,39 @@ def jittered_cells(height: int, width: int, *, grid: int, sharpness: float, tile
     >>> cells.count, cells.cores.shape
     (6, (6, 4))
     """
-    axes = tuple(_axis(size, grid, sharpness, max(_spacings(height, width, grid))) for size in (height, width))
-    rows, columns = axes
-    unit = max(rows.spacing, columns.spacing)
-    number = np.arange(rows.count * columns.count).reshape(rows.count, columns.count)
-    shape = (rows.count + 2 * rows.beyond, columns.count + 2 * columns.beyond)
+    rows, columns = _axes(height, width, grid, sharpness)
+    squares = (rows.count + 2 * rows.beyond, columns.count + 2 * columns.beyond)
     if tileable:
-        number = np.pad(number, [(rows.beyond, rows.beyond), (columns.beyond, columns.beyond)], "wrap")
+        turn = [np.arange(-axis.beyond, axis.count + axis.beyond) % axis.count for axis in (rows, columns)]
+        number = turn[0][:, None] * columns.count + turn[1][None, :]
     else:
-        number = np.arange(shape[0] * shape[1]).reshape(shape)
+        number = np.arange(squares[0] * squares[1]).reshape(squares)
     jitter = random(seed, 0).random((int(number.max()) + 1, 2))[number]
     y, x = rows.jittered(jitter[:, :, 0], 0), columns.jittered(jitter[:, :, 1], 1)
-    found = extents(rows, columns, y, x, unit, sharpness, (1, BLEND, LEFT_OUT))
-    found = found.reshape(3, -1, 4)
     number = number.ravel()
-    whole = np.zeros((3, number.max() + 1, 4), np.int64)
-    for shapes, shape_of_all in zip(found, whole, strict=True):
-        np.minimum.at(shape_of_all[:, ::2], number, shapes[:, ::2])
-        np.maximum.at(shape_of_all[:, 1::2], number, shapes[:, 1::2])
+    found = extents(rows, columns, y, x, sharpness, (1, BLEND, LEFT_OUT)).reshape(3, 4, -1)
+    shapes = np.full((3, 4, number.max() + 1), inf, np.float32)  # of a cell, all its centres together
+    shapes[:, 1::2] = -inf
+    for boxes, shape in zip(found, shapes, strict=True):
+        for side in range(4):
+            (np.maximum if side % 2 else np.minimum).at(shape[side], number, boxes[side])
     centres = np.stack([y.ravel(), x.ravel()], 1)
-    boxes = whole[2][number] + np.repeat(centres, 2, axis=1)
-    boxes[:, :2] = boxes[:, :2].clip(0, height)
-    boxes[:, 2:] = boxes[:, 2:].clip(0, width)
-    kept = (boxes[:, 0] < boxes[:, 1]) & (boxes[:, 2] < boxes[:, 3])
-    cells, cell = np.unique(number[kept], return_inverse=True)
+    boxes = shapes[2][:, number].T + np.repeat(centres, 2, axis=1)
+    boxes = boxes.clip(0, [height, height, width, width])
+    kept = np.flatnonzero((boxes[:, 0] < boxes[:, 1]) & (boxes[:, 2] < boxes[:, 3]))
+    used, cell = np.unique(number[kept], return_inverse=True)
+    shapes = np.where(np.isfinite(shapes), shapes, 0)[:, :, used].astype(np.int64)
     return Cells(
-        height, width, sharpness, unit, len(cells), centres[kept], cell, boxes[kept], whole[1][cells], whole[0][cells]
+        height=height,
+        width=width,
+        sharpness=sharpness,
+        unit=max(rows.spacing, columns.spacing),
+        count=len(used),
+        centres=centres[kept],
+        cell=cell,
+        boxes=boxes[kept].astype(np.int64),
+        zones=shapes[1].T,
+        cores=shapes[0].T,
     )
 
 
@@ -279,15 +287,11 @@ def random(seed: int, stream: int) -> Generator:
     return Generator(SFC64(SeedSequence(seed, spawn_key=(stream,))))
 
 
-def _spacings(height: int, width: int, grid: int) -> tuple[float, float]:
-    return height / _squares(height, grid), width / _squares(width, grid)
-
-
-def _squares(size: int, grid: int) -> int:
-    return max(1, round(size / grid))
-
-
-def _axis(size: int, grid: int, sharpness: float, unit: float) -> Axis:
-    count = _squares(size, grid)
-    reached = farthest(sharpness, LEFT_OUT) * unit + ROUNDING
-    return Axis(size, count, ceil(reached * count / size) + 1)
+def _axes(height: int, width: int, grid: int, sharpness: float) -> tuple[Axis, Axis]:
+    counts = [max(1, round(size / grid)) for size in (height, width)]
+    unit = max(height / counts[0], width / counts[1])
+    pixels = reach(unit, sharpness, LEFT_OUT)
+    rows, columns = (
+        Axis(size, count, ceil(pixels * count / size) + 1) for size, count in zip((height, width), counts, strict=True)
+    )
+    return rows, columns
