@@ -8,7 +8,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from app.errors import ConflictError, DeletedError, InvalidInputError, NotFoundError
-from app.experiments.model import Experiment, Sample, Status
+from app.experiments.model import Experiment, ExperimentInput, Sample, Status
+from app.images.crop import Frames, Rectangle
 from app.store.sql import SqlStore
 from tests.store.records import START, a_sample, an_experiment, an_output, succeeded
 
@@ -18,6 +19,21 @@ def test_gives_samples_back_as_they_were(store: SqlStore) -> None:
     store.add_sample(sample, owner="someone")
     assert store.sample(sample.id) == sample
     assert store.bundled_samples() == [sample]
+
+
+def test_gives_videos_back_as_they_were(store: SqlStore) -> None:
+    """A clip as a sample, a part of it as an input, and a film as an output: frames, rates and types."""
+    sample = a_sample(frames=72, rate=24000 / 1001, media_type="video/webm")
+    store.add_sample(sample)
+    assert store.sample(sample.id) == sample
+    part = ExperimentInput(sample.id, Rectangle(1, 2, 30, 40), Frames(12, 48))
+    experiment = an_experiment(sample, inputs=(part,))
+    store.add(experiment)
+    store.start(experiment.id)
+    film = an_output(media_type="video/mp4", frames=96, rate=100 / 7)
+    store.succeed(experiment.id, [film], {}, {})
+    found = store.get(experiment.id)
+    assert (found.inputs, found.outputs) == ((part,), (film,))
 
 
 def test_gives_experiments_back_as_they_were(store: SqlStore, sample: Sample) -> None:
