@@ -1,0 +1,151 @@
+"""Patchwork: random patches of a sample, joined so that the joins cannot be seen.
+
+    O(x) = Σ_i (I(x − p_i + q_i) − a) w_i(x) / sqrt(Σ_i w_i(x)²) + a
+
+The patches are independent, so where they overlap the variance of the weighted sum is Σ w_i² times the sample's: the
+divisor gives it the sample's again. Feathering divides by Σ w_i instead, and the joins are dull.
+
+References
+----------
+P. Harrison, "Patchwork Texture Synthesis", Monash University technical report, 2002: equation (2) and figure 1.
+"""
+
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.synthesis.cells import Cells, Window, jittered_cells
+from app.synthesis.field import Progress, into, row_blocks
+from app.synthesis.team import Team
+
+TILE = 128  # columns that are joined at once, so that all of their sums stay in the processor's cache
+
+Blend = Literal["deviation", "feather", "sharp"]
+Real = NDArray[np.float32]
+
+
+class Patchwork:
+    """A sample's patches on some cells: `rows` joins any of them.
+
+    Parameters
+    ----------
+    h : ndarray of float32, shape (H, W, C)
+        The sample.
+    cells : Cells
+        Those of the texture.
+    blend : {"deviation", "feather", "sharp"}
+        Keep the standard deviation in the joins, feather them, or let each pixel have the cell of the nearest centre.
+    seed : int
+        Not negative; draws the sources.
+
+    Attributes
+    ----------
+    sources : ndarray of int64, shape (cells.count, 2)
+        q_i as (y, x).
+
+    Raises
+    ------
+    ValueError
+        If the sample does not hold the cells.
+    """
+
+    def __init__(self, h: Real, cells: Cells, *, blend: Blend = "deviation", seed: int = 0) -> None:
+        self.cells, self._blend = cells, blend
+        height, width, _ = h.shape
+        self.sources = cells.sources(height, width, seed)
+        margin = cells.margin(self.sources, height, width)
+        self._start = self.sources[cells.cell] + margin
+        self._mean: Real = h.mean((0, 1), np.float64).astype(np.float32)
+        centred = h.transpose(2, 0, 1) - self._mean[:, None, None]
+        self._planes = np.pad(centred, [(0, 0), (margin, margin), (margin, margin)], "symmetric")
+
+    def rows(self, top: int, bottom: int) -> Real:
+        """Rows ``top`` to ``bottom`` − 1 of the texture, shape (C, bottom − top, width), any time and in any order."""
+        width = self.cells.width
+        out = np.zeros((len(self._planes), bottom - top, width), np.float32)
+        among = self.cells.reaching(Window(top, bottom, 0, width))
+        for left in range(0, width, TILE):
+            window = Window(top, bottom, left, min(left + TILE, width))
+            self._join(out[:, :, left : window.right], window, among)
+        out += self._mean[:, None, None]
+        return out
+
+    def _join(self, out: Real, window: Window, among: NDArray[np.int64]) -> None:
+        norm = np.zeros(out.shape[1:], np.float32)
+        room = np.empty_like(norm)
+        for part in self.cells.parts(window, among):
+            y, x = self._start[part.centre] + part.source
+            patch = self._planes[
+                :, y + part.rows.start : y + part.rows.stop, x + part.columns.start : x + part.columns.stop
+            ]
+            there = (part.rows, part.columns)
+            if self._blend == "sharp":
+                np.copyto(out[:, *there], patch, where=part.weight == 1)
+                continue
+            term = room[there]
+            norm[there] += part.weight if self._blend == "feather" else np.square(part.weight, out=term)
+            for plane, source in zip(out, patch, strict=True):
+                plane[there] += np.multiply(source, part.weight, out=term)
+        if self._blend == "deviation":
+            out /= np.sqrt(norm, out=norm)
+        elif self._blend == "feather":
+            out /= norm
+
+
+def patchwork(
+    h: Real,
+    height: int,
+    width: int,
+    *,
+    grid: int = 64,
+    sharpness: float = 6,
+    blend: Blend = "deviation",
+    tileable: bool = True,
+    seed: int = 0,
+    threads: int = 1,
+    progress: Progress | None = None,
+) -> Real:
+    """The patchwork of a sample as one array.
+
+    Parameters
+    ----------
+    h : ndarray of float32, shape (H, W, C)
+        The sample, at least `app.synthesis.cells.least_sample` pixels each way.
+    height, width : int
+        Of the texture.
+    grid : int
+        Spacing of the cells in pixels, at least 4.
+    sharpness : float
+        f, 1–40.
+    blend : {"deviation", "feather", "sharp"}
+    tileable : bool
+        On a torus.
+    seed : int
+        Not negative.
+    threads : int
+        The result does not depend on it.
+    progress : callable ``(stage, part)``, optional
+
+    Returns
+    -------
+    ndarray of float32, shape (height, width, C)
+        Values may lie outside the sample's range.
+
+    Examples
+    --------
+    >>> h = np.random.default_rng(0).uniform(0, 255, (96, 96, 3)).astype(np.float32)
+    >>> patchwork(h, 100, 130, grid=16, seed=7).shape
+    (100, 130, 3)
+    """
+    cells = jittered_cells(height, width, grid=grid, sharpness=sharpness, tileable=tileable, seed=seed)
+    made = Patchwork(h, cells, blend=blend, seed=seed)
+    texture = np.empty((height, width, h.shape[2]), np.float32)
+    store = into(texture)
+    with Team(threads) as team:
+        team.run(
+            lambda rows: store(rows[0], made.rows(*rows)),
+            row_blocks(height),
+            lambda part: progress("texture", part) if progress else None,
+        )
+    return texture
