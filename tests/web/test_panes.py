@@ -1,4 +1,4 @@
-"""What the page of an experiment says beside its pictures, also of experiments made before anything was measured."""
+"""What the page of an experiment says beside its pictures and films, also of experiments of the first version."""
 
 from dataclasses import replace
 from datetime import UTC, datetime
@@ -8,7 +8,8 @@ import pytest
 
 from app.experiments.model import Experiment, ExperimentInput, Output
 from app.images.crop import Rectangle
-from app.web.panes import crop_panes, facts, gallery, steps, texture_pane, tiling
+from app.web.clips import Clip
+from app.web.panes import crop_panes, facts, gallery, input_titles, looping, steps, texture_pane, tiling
 
 
 def output(name: str, kind: Any = "view") -> Output:
@@ -24,6 +25,25 @@ OLD = Experiment(
     owner="",
     created_at=datetime(2026, 1, 1, tzinfo=UTC),
     outputs=(output("texture"), output("crop"), output("spot"), output(".texture-deep")),
+)
+
+
+def film(name: str, form: str, kind: Any = "view", frames: int = 12) -> Output:
+    return Output(name, name.capitalize(), form, 8, 6, 100, "0" * 64, kind, frames, 24.0)
+
+
+MOVING = replace(
+    OLD,
+    outputs=(
+        film("texture", "video/webm", "texture"),
+        film("texture-mp4", "video/mp4"),
+        film("preview", "image/webp"),
+        output("cube"),
+        output("cells"),
+        film("crop", "video/webm", frames=9),
+        film("crop-mp4", "video/mp4", frames=9),
+        output("crop-cube"),
+    ),
 )
 
 
@@ -70,3 +90,54 @@ def test_facts_name_their_picture_only_where_they_would_be_mistaken() -> None:
 )
 def test_whether_textures_tile_is_said_of_one_and_of_two(seamless: list[bool], words: str) -> None:
     assert words in tiling(seamless)
+
+
+def test_films_are_offered_as_webm_first_and_as_mp4_besides() -> None:
+    """With the poster that is shown until they are there, and what a clock of frames must know."""
+    crop, texture = (pane.clip for pane in (crop_panes(MOVING)[0], texture_pane(MOVING)))
+    address = "/api/v1/experiments/old/outputs"
+    files = ((f"{address}/crop", "video/webm"), (f"{address}/crop-mp4", "video/mp4"))
+    assert crop == Clip(files, f"{address}/.poster-crop", 9, 24.0)
+    assert texture is not None
+    assert (texture.poster, texture.frames) == (f"{address}/.poster-texture", 12)
+    assert texture_pane(OLD).clip is None
+
+
+def test_the_steps_of_a_film_are_stills_and_begin_with_both_cubes() -> None:
+    """What plays is in the player already."""
+    assert [pane.title for pane in steps(MOVING)] == ["Crop-cube", "Cube", "Cells"]
+
+
+@pytest.mark.parametrize(
+    ("loops", "words"),
+    [
+        ([True], "Its last frame continues in the first"),
+        ([False], "It does not loop"),
+        ([True, True], "Their last frames continue"),
+        ([True, False], "Only one of them loops"),
+        ([False, False], "They do not loop"),
+    ],
+)
+def test_whether_films_loop_is_said_of_one_and_of_two(loops: list[bool], words: str) -> None:
+    assert words in looping(loops)
+
+
+def test_nothing_is_said_of_loops_where_nothing_moves() -> None:
+    assert looping([]) == ""
+
+
+@pytest.mark.parametrize(
+    ("method", "titles", "beside"),
+    [
+        ("rpn", ["Sample"], ["Other sample"]),
+        ("mix", ["First sample", "Second sample"], ["First other sample", "Second other sample"]),
+        ("modulus-phase", ["Modulus", "Phase"], ["Other modulus", "Other phase"]),
+    ],
+)
+def test_inputs_are_named_by_their_part_in_the_method_where_they_have_one(
+    method: str, titles: list[str], beside: list[str]
+) -> None:
+    """Those of a mixture are all alike."""
+    made = replace(OLD, method=method, inputs=OLD.inputs * len(titles))
+    assert input_titles(made) == titles
+    assert input_titles(made, other=True) == beside
