@@ -38,6 +38,19 @@ TOLD = (
         "sample pixel by pixel needs no model at all: structure is kept, and so are whole pieces of the sample.",
         ("heeger-bergen", "efros-leung"),
     ),
+    Group(
+        "Patchwork",
+        "Patches of random shape, copied from anywhere in the sample and joined so that the joins keep its contrast. "
+        "Inside a patch everything is as in the sample, sharp structure too; the same patches, chosen to resemble "
+        "another picture, paint that picture in the texture.",
+        ("patchwork", "transfer"),
+    ),
+    Group(
+        "Videos",
+        "Water, fire, foliage, smoke: textures that move. Both ideas carry over to time: the phase of all frequencies "
+        "of space and time drawn at random, and patches joined in space whose frames are joined in time.",
+        ("video-rpn", "video-patchwork", "video-transfer"),
+    ),
 )
 
 
