@@ -49,6 +49,7 @@ MATRICES = {
     9: Colorspace.BT2020,
 }
 HD_LINES = 720
+NEUTRAL = 128
 HIGH_DYNAMIC_RANGE = (ColorTrc.SMPTE2084, ColorTrc.ARIB_STD_B67)
 OBLONG = 4  # pixels said to be so much wider than high, or higher than wide, are a mistake
 DISPLAY_MATRIX = struct.Struct("=9i")
@@ -83,7 +84,10 @@ def decode(data: bytes, container: Container, max_pixels: int, limits: ClipLimit
         raise BrokenFileError(DAMAGED)
     film = _Film(data, container, max_pixels, limits)
     channels = film.channels
+    # Seldom worth another pass through the file: it has an alpha channel, or begins without colour.
     if channels == 4 and all(is_opaque(frame.pixels[..., 3]) for frame in film.frames(4)):
+        channels = 3
+    if channels == 1 and not film.is_grey():
         channels = 3
     return Clip(film.width, film.height, channels, container.media_type, film.frames(channels))
 
@@ -113,8 +117,13 @@ class _Film:
         self._range = ColorRange.JPEG if first.color_range == ColorRange.JPEG else ColorRange.MPEG
         self._orientation = _orientation(first)
         self.width, self.height = self._scaled[::-1] if self._orientation > 4 else self._scaled
-        name = first.format.name
-        self.channels = 1 if name.startswith("gray") else 4 if name.startswith("yuva") else 3
+        self.channels = 4 if first.format.name.startswith("yuva") else 1 if _is_neutral(first) else 3
+
+    def is_grey(self) -> bool:
+        """Whether no frame has a colour."""
+        with _telling(), self._open() as opened:
+            stream = _stream(opened)
+            return all(map(_is_neutral, _decoded(opened, stream, self._decoder(stream))))
 
     def frames(self, channels: int) -> Iterator[Frame]:
         return within(self._frames(channels), self._limits)
@@ -210,6 +219,19 @@ def _decoded(opened: InputContainer, stream: VideoStream, codec: VideoCodecConte
             yield frame
     if packets < len(stream.index_entries):
         raise BrokenFileError(DAMAGED)
+
+
+def _is_neutral(frame: VideoFrame) -> bool:
+    """Whether a frame has no chroma, or none but neutral one."""
+    if frame.format.name.startswith("gray"):
+        return True
+    if frame.format.name not in ("yuv420p", "yuvj420p", "yuv422p", "yuvj422p", "yuv444p", "yuvj444p"):
+        return False
+    for plane in frame.planes[1:]:
+        rows = np.frombuffer(memoryview(plane), np.uint8).reshape(-1, plane.line_size)[: plane.height, : plane.width]
+        if (rows != NEUTRAL).any():
+            return False
+    return True
 
 
 def _squared(width: int, height: int, aspect: Fraction | None) -> tuple[int, int]:
