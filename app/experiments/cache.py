@@ -6,6 +6,7 @@ from contextlib import suppress
 from pathlib import Path
 from threading import Lock
 from uuid import uuid4
+from weakref import WeakValueDictionary
 
 
 class FileCache:
@@ -23,21 +24,37 @@ class FileCache:
         self._directory = directory
         self._max_bytes = max_bytes
         self._lock = Lock()
+        self._making: WeakValueDictionary[str, Lock] = WeakValueDictionary()
         self._written = max_bytes  # as if full: the first file that is added looks at what is there
 
     def get(self, name: str, make: Callable[[], bytes]) -> Path:
-        """The file of this name; made if it is not there."""
+        """The file of this name; made if it is not there, perhaps by several threads at once."""
         path = self._directory / name
-        try:
-            os.utime(path)
-        except FileNotFoundError:
-            data = make()
-            self._directory.mkdir(parents=True, exist_ok=True)
-            temporary = self._directory / f".{uuid4().hex}"
-            temporary.write_bytes(data)
-            temporary.replace(path)
-            self._make_room(len(data))
+        if not _touched(path):
+            self._add(path, lambda temporary: temporary.write_bytes(make()))
         return path
+
+    def file(self, name: str, write: Callable[[Path], None]) -> Path:
+        """The same for what takes long: one thread writes it, others wait."""
+        path = self._directory / name
+        if not _touched(path):
+            with self._lock:
+                making = self._making.setdefault(name, Lock())
+            with making:
+                if not _touched(path):
+                    self._add(path, write)
+        return path
+
+    def _add(self, path: Path, write: Callable[[Path], object]) -> None:
+        self._directory.mkdir(parents=True, exist_ok=True)
+        temporary = self._directory / f".{uuid4().hex}"
+        try:
+            write(temporary)
+            size = temporary.stat().st_size
+            temporary.replace(path)
+        finally:
+            temporary.unlink(missing_ok=True)
+        self._make_room(size)
 
     def forget(self, prefix: str) -> None:
         """Remove what was made of one original: the files whose names start so."""
@@ -62,3 +79,12 @@ class FileCache:
                     break
                 path.unlink(missing_ok=True)
                 total -= size
+
+
+def _touched(path: Path) -> bool:
+    """Note that a file is used; whether it is there."""
+    try:
+        os.utime(path)
+    except FileNotFoundError:
+        return False
+    return True

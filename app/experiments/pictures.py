@@ -3,20 +3,29 @@
 import hashlib
 from collections.abc import Callable
 from pathlib import Path
+from typing import Literal
 
-from app.errors import InvalidInputError
+from app.errors import InvalidInputError, NotFoundError
 from app.experiments.cache import FileCache
 from app.experiments.model import Output, Sample
 from app.experiments.ports import BlobStore
-from app.images.convert import PREVIEW, THUMBNAIL, Format, convert, pair, rendition, thumbnails
+from app.images.convert import PREVIEW, THUMBNAIL, Format, convert, flattened, pair, rendition, thumbnails
 from app.images.png import encode_png
 from app.images.strip import read_frame
+from app.images.video.reader import first_frame
+from app.images.video.writers import write_film
 
+FilmFormat = Literal["mp4", "webm"]
 DEEP_FORMATS = ("png", "tiff")
 SIZES = (256, 512, 1024, 2048)
 PREVIEW_NAME = ".preview"
 THUMBNAIL_NAMES = (".thumbnail-crop", ".thumbnail-texture")
-DERIVED = {PREVIEW_NAME: "Preview", **dict.fromkeys(THUMBNAIL_NAMES, "Thumbnail")}
+POSTERS = {"crop": ".poster-crop", "texture": ".poster-texture"}
+DERIVED = {
+    PREVIEW_NAME: "Preview",
+    **dict.fromkeys(THUMBNAIL_NAMES, "Thumbnail"),
+    **dict.fromkeys(POSTERS.values(), "First frame"),
+}
 PNG = "image/png"
 
 
@@ -53,6 +62,28 @@ class Pictures:
         name = f"{_part(sample, frame)}.png"
         return self._cache.get(name, lambda: encode_png(read_frame(stored, frame, sample.width, sample.height)))
 
+    def film(self, sample: Sample, file_format: FilmFormat) -> tuple[Path, str]:
+        """A video as a file that plays; made when first asked for.
+
+        MP4 plays everywhere. WebM has the pixels exactly as they are stored, if the film is not too long for that (see
+        `app.images.video.writers`). Pixels that are not opaque lie on mid-grey.
+
+        Raises
+        ------
+        NotFoundError
+            If the sample is a still picture.
+        """
+        if not sample.moving:
+            raise NotFoundError("This sample is a still picture: nothing of it plays; take its image instead.")
+        stored = self._blobs.path(sample.digest)
+
+        def write(path: Path) -> None:
+            pictures = (read_frame(stored, frame, sample.width, sample.height) for frame in range(sample.frames))
+            write_film(map(flattened, pictures), path, file_format, count=sample.frames, rate=sample.rate)
+
+        name = f"{sample.digest}-{sample.height}-{sample.rate:g}.{file_format}"
+        return self._cache.file(name, write), f"video/{file_format}"
+
     def converted(self, output: Output, file_format: Format) -> tuple[Path, str]:
         """An output in this format, and its media type."""
         stored = self._blobs.path(output.digest)
@@ -62,8 +93,13 @@ class Pictures:
         return self._cache.get(f"{output.digest}.{file_format}", lambda: convert(stored, file_format)[0]), media_type
 
     def derived(self, name: str, crop: Output, texture: Output) -> tuple[Output, Path]:
-        """One of the pictures that stand for an experiment in lists and elsewhere; made when first asked for."""
-        stored = self._blobs.path(crop.digest), self._blobs.path(texture.digest)
+        """One of the pictures that stand for an experiment in lists and elsewhere; made when first asked for.
+
+        Of a film it shows the first frame.
+        """
+        if name in POSTERS.values():
+            return self._poster(name, crop if name == POSTERS["crop"] else texture)
+        stored = self._picture(crop), self._picture(texture)
         pair_digest = hashlib.sha256(f"{name} {crop.digest} {texture.digest}".encode()).hexdigest()
 
         def cached(part: str, make: Callable[[], bytes]) -> Path:
@@ -83,6 +119,17 @@ class Pictures:
             path, media_type = cached(name, both), "image/webp"
         width, height = PREVIEW if name == PREVIEW_NAME else _thumbnail_size(name, crop, texture)
         return Output(name, DERIVED[name], media_type, width, height, path.stat().st_size, pair_digest), path
+
+    def _poster(self, name: str, output: Output) -> tuple[Output, Path]:
+        path = self._picture(output)
+        digest = hashlib.sha256(f"{name} {output.digest}".encode()).hexdigest()
+        return Output(name, DERIVED[name], PNG, output.width, output.height, path.stat().st_size, digest), path
+
+    def _picture(self, output: Output) -> Path:
+        stored = self._blobs.path(output.digest)
+        if not output.film:
+            return stored
+        return self._cache.get(f"{output.digest}-first.png", lambda: encode_png(first_frame(stored)))
 
     def check_deep(self, file_format: Format) -> None:
         """Raise `InvalidInputError` if files of this format have no 16 bits per channel."""

@@ -19,7 +19,7 @@ from app.experiments.meter import Meter
 from app.experiments.model import Experiment, Output, Page, Sample, Snapshot
 from app.experiments.outputs import AnyFormat, Outputs
 from app.experiments.ownership import same, token_digest
-from app.experiments.pictures import Pictures
+from app.experiments.pictures import FilmFormat, Pictures
 from app.experiments.ports import BlobStore, Executor, ExperimentStore
 from app.experiments.run import DEEP
 from app.experiments.submission import NewExperiment
@@ -59,14 +59,8 @@ class Service:
         self.catalogue = Catalogue(store, executor, self._intake, settings)
         keep, longest = timedelta(hours=settings.sample_keep_hours), timedelta(hours=1, seconds=settings.time_limit)
         self._housekeeping = Housekeeping(store, blobs, cache, sample_keep=keep, longest_run=longest)
-        self._direct = Direct(
-            self._intake,
-            self._housekeeping,
-            self._outputs,
-            self._following,
-            self._acceptance.submit_transient,
-            self._forget,
-        )
+        submit = self._acceptance.submit_transient
+        self._direct = Direct(self._intake, self._housekeeping, self._outputs, self._following, submit, self._forget)
         self._closing = threading.Event()
         self._background: list[threading.Thread] = []
 
@@ -132,6 +126,10 @@ class Service:
     def rendition(self, sample_id: str, size: int | None, frame: int = 0) -> tuple[Path, str]:
         """A file that browsers show, and its media type; ``size`` bounds the longer side, None is the full size."""
         return self._pictures.rendition(self._store.sample(sample_id), size, frame)
+
+    def film(self, sample_id: str, file_format: FilmFormat = "mp4") -> tuple[Path, str]:
+        """A video sample as a file that plays, and its media type. Raises `NotFoundError`, also for a still picture."""
+        return self._pictures.film(self._store.sample(sample_id), file_format)
 
     def structure(self, sample_id: str, crop: Rectangle | None = None, sigma: float = SIGMA) -> Structure:
         """How structured a crop is, see `Meter.structure`. Raises `NotFoundError` or `InvalidInputError`."""

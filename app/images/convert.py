@@ -84,6 +84,14 @@ def rendition(png_path: Path, longest_side: int | None) -> tuple[bytes, str]:
     return _lossy(image, "jpeg", SMALL_QUALITY), "image/jpeg"
 
 
+def flattened(picture: Pixels) -> Pixels:
+    """Lay a picture of 8 bits, (H, W, C), on mid-grey where it has an alpha channel that is not opaque."""
+    colour, alpha = with_channels(picture)
+    if alpha is None:
+        return colour
+    return np.asarray(_on_grey(_image(picture)).convert("L" if colour.shape[2] == 1 else "RGB")).reshape(colour.shape)
+
+
 def thumbnails(crop: bytes | Path | Pixels, texture: bytes | Path | Pixels) -> tuple[bytes, bytes]:
     """Make WebP thumbnails of a crop and its texture at one scale, no side longer than 320 pixels; never enlarged."""
     images = [_image(_decoded(each)) for each in (crop, texture)]
@@ -143,6 +151,11 @@ def _scaled(image: Image.Image, scale: float) -> Image.Image:
     return image.resize((width, height), Image.Resampling.LANCZOS, reducing_gap=2.0)
 
 
+def _on_grey(image: Image.Image) -> Image.Image:
+    ground = Image.new("RGBA", image.size, (GROUND, GROUND, GROUND, 255))
+    return Image.alpha_composite(ground, image.convert("RGBA")).convert("RGB")
+
+
 def _check_side(array: Pixels, file_format: Format) -> None:
     longest = JPEG_LONGEST if file_format == "jpeg" else WEBP_LONGEST
     if max(array.shape[:2]) > longest:
@@ -157,8 +170,7 @@ def _lossy(image: Image.Image, file_format: Format, quality: int) -> bytes:
     written = io.BytesIO()
     if file_format == "jpeg":
         if image.mode in ("LA", "RGBA"):
-            ground = Image.new("RGBA", image.size, (GROUND, GROUND, GROUND, 255))
-            image = Image.alpha_composite(ground, image.convert("RGBA")).convert("RGB")
+            image = _on_grey(image)
         profile = _srgb() if image.mode == "RGB" else None
         image.save(written, "jpeg", quality=quality, subsampling=0, icc_profile=profile)
     else:

@@ -32,6 +32,7 @@ def test_the_document_is_openapi_3_1_with_every_route_of_the_design(document):
         "POST /api/v1/samples",
         "GET /api/v1/samples/{sample_id}",
         "GET /api/v1/samples/{sample_id}/image",
+        "GET /api/v1/samples/{sample_id}/video",
         "GET /api/v1/samples/{sample_id}/structure",
         "GET /api/v1/experiments",
         "POST /api/v1/experiments",

@@ -1,12 +1,13 @@
-"""``/api/v1/samples``: photographs come in, their records and renditions go out."""
+"""``/api/v1/samples``: photographs and clips come in, their records and renditions go out."""
 
-from typing import Annotated
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Query, Request
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import FileResponse, Response
 
 from app.errors import InvalidInputError
+from app.experiments.pictures import FilmFormat
 from app.web.api.bodies import IDENTIFIER
 from app.web.api.records import API, SampleList, SampleRecord
 from app.web.deps import ServiceDep, TokenDep, base_url, in_upload_thread
@@ -31,7 +32,8 @@ _FORM = {
                         "file": {
                             "type": "string",
                             "contentMediaType": "application/octet-stream",
-                            "description": "PNG, JPEG, WebP or TIFF, 8 or 16 bits, grey or colour.",
+                            "description": "PNG, JPEG, WebP or TIFF, 8 or 16 bits, grey or colour; or a video: MP4, "
+                            "WebM, GIF, animated WebP or APNG.",
                         }
                     },
                 }
@@ -51,7 +53,7 @@ def list_samples(request: Request, service: ServiceDep) -> SampleList:
 @router.post(
     "",
     status_code=201,
-    summary="Upload a photograph",
+    summary="Upload a photograph or a clip",
     responses={
         201: {"headers": {"Location": {"description": "Address of the record.", "schema": {"type": "string"}}}},
         **problems(422, 503),
@@ -77,8 +79,19 @@ async def upload_sample(request: Request, response: Response, service: ServiceDe
 
 @router.get("/{sample_id}", summary="The record of a sample", responses=problems(404))
 def read_sample(sample_id: SampleId, request: Request, service: ServiceDep) -> SampleRecord:
-    """Its size, depth and channels."""
+    """Its size, depth and channels, and of a video how many frames it has."""
     return SampleRecord.of(service.sample(sample_id), base_url(request))
+
+
+def _file(description: str, *media_types: str) -> dict[int | str, dict[str, Any]]:
+    """Declare the answers of a route that gives a file out."""
+    content = {media: {"schema": {"type": "string", "format": "binary"}} for media in media_types}
+    return {
+        200: {"description": description, "content": content},
+        206: {"description": "The range that was asked for."},
+        304: {"description": "You have it already."},
+        **problems(404, 416, 422),
+    }
 
 
 @router.get(
@@ -86,17 +99,7 @@ def read_sample(sample_id: SampleId, request: Request, service: ServiceDep) -> S
     name="sample_image",
     summary="A sample as a picture",
     response_class=FileResponse,
-    responses={
-        200: {
-            "description": "JPEG if it is opaque, otherwise PNG.",
-            "content": {
-                media: {"schema": {"type": "string", "format": "binary"}} for media in ("image/jpeg", "image/png")
-            },
-        },
-        206: {"description": "The range that was asked for."},
-        304: {"description": "You have it already."},
-        **problems(404, 416, 422),
-    },
+    responses=_file("JPEG if it is opaque, otherwise PNG.", "image/jpeg", "image/png"),
 )
 async def sample_image(
     sample_id: SampleId,
@@ -114,6 +117,35 @@ async def sample_image(
     sample = await run_in_threadpool(service.sample, sample_id)
     path, media_type = await in_upload_thread(request, service.rendition, sample_id, size, frame)
     tag = f"{sample.digest}-{frame}-{path.stat().st_size}"
+    return file_response(
+        request, path, media_type, tag=tag, filename=f"{sample_id}{SUFFIXES[media_type]}", cache=FOREVER
+    )
+
+
+@router.get(
+    "/{sample_id}/video",
+    name="sample_video",
+    summary="A sample as a video",
+    response_class=FileResponse,
+    responses=_file("All of its frames.", "video/mp4", "video/webm"),
+)
+async def sample_video(
+    sample_id: SampleId,
+    request: Request,
+    service: ServiceDep,
+    file_format: Annotated[
+        FilmFormat,
+        Query(
+            alias="format",
+            description="MP4 (H.264) plays everywhere; WebM (VP9) has the very pixels of the sample, unless the video "
+            "is too long for a lossless file.",
+        ),
+    ] = "mp4",
+) -> Response:
+    """Upright, in sRGB and without sound; a sample that is a still picture has none."""
+    sample = await run_in_threadpool(service.sample, sample_id)
+    path, media_type = await in_upload_thread(request, service.film, sample_id, file_format)
+    tag = f"{sample.digest}-{sample.height}-{sample.rate:g}-{file_format}"
     return file_response(
         request, path, media_type, tag=tag, filename=f"{sample_id}{SUFFIXES[media_type]}", cache=FOREVER
     )
