@@ -11,6 +11,7 @@ from app.methods.modulus_phase import MODULUS_PHASE
 from app.methods.rayleigh import RAYLEIGH
 from app.methods.rpn import RPN
 from app.methods.texton import TEXTON
+from app.methods.video_rpn import VIDEO_RPN
 
 METHODS: dict[str, Method] = {
     "rpn": RPN,
@@ -22,6 +23,7 @@ METHODS: dict[str, Method] = {
     "rayleigh": RAYLEIGH,
     "heeger-bergen": HEEGER_BERGEN,
     "efros-leung": EFROS_LEUNG,
+    "video-rpn": VIDEO_RPN,
 }
 
 

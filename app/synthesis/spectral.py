@@ -21,7 +21,7 @@ Real = NDArray[np.float32]
 
 
 @cache
-def _phase_table() -> Complex:
+def phase_table() -> Complex:
     """``exp(iθ)`` for the 65536 equidistant θ = π(1 − 2j / 65536) of ]−π, π]."""
     theta = np.pi * (1 - 2 * np.arange(STATES) / STATES)
     table: Complex = np.exp(1j * theta).astype(np.complex64)
@@ -71,13 +71,13 @@ def random_block(height: int, width: int, block: tuple[int, int], seed: int, ray
     count = height * (last - first)
     source = SFC64(SeedSequence(seed, spawn_key=(first,)))
     words = source.random_raw(-(-count // 4)).view(np.uint16)[:count].reshape(height, last - first)
-    values = np.take(_phase_table(), words, mode="clip")
+    values = np.take(phase_table(), words, mode="clip")
     if rayleigh:
         drawn = source.random_raw(-(-count // 4)).view(np.uint16)[:count].reshape(height, last - first)
         values *= np.take(_rayleigh_table(), drawn, mode="clip")
     for column in {0, width // 2} if width % 2 == 0 else {0}:
         if first <= column < last:
-            _symmetrise(values[:, column - first])
+            symmetrise(values[:, column - first])
             for row in {0, height // 2} if height % 2 == 0 else {0}:
                 sign = 1 if words[row, column - first] < STATES // 2 else -1
                 # |N| of a real normal N, where all other coefficients are complex normal
@@ -88,7 +88,7 @@ def random_block(height: int, width: int, block: tuple[int, int], seed: int, ray
     return values
 
 
-def _symmetrise(column: Complex) -> None:
+def symmetrise(column: Complex) -> None:
     """Make ``column[−k] = conj column[k]`` in place, the lower half following the upper one."""
     half = (len(column) - 1) // 2
     column[len(column) - half :] = column[half:0:-1].conj()

@@ -1,0 +1,304 @@
+"""RPN in three dimensions: the modulus of a film over time and space, with a random phase; a Gaussian dynamic texture.
+
+    Ẑ(ω, ξ) = ĥ(ω, ξ) exp(iθ(ω, ξ)),   θ odd, uniform on ]−π, π], θ(0, 0) = 0,
+
+the same θ for every channel. The result is periodic in space and in time. A film is hardly ever: the jumps between
+opposite borders, and between its last frame and its first, would come back as streaks and as a flicker over all of it.
+So every frame is replaced by its periodic component, and the jump J(ξ) that is left between the last frame and the
+first is taken out as Moisan does it along one more axis, a frame counting as a pixel:
+
+    ŝ(ω, ξ) = Ĵ(ξ) (1 − exp(2πi k/T)) / (4 sin²(π k/T) + 4 sin²(π k₁/H) + 4 sin²(π k₂/W)),   ω = 2πk/T.
+
+That leaves k = 0, and with it the average frame and all that stands still, as it is. (In features of more than 50
+pixels of the three bundled clips the mean square difference between frames is 9.1, 3.2 and 1.0 times the clip's own
+with the jump, 0.9, 0.9 and 1.0 without; that of second differences 102, 49 and 1.1 against 1.2, 1.3 and 1.0.)
+
+A larger or longer film is made from the extended spot, see `app.synthesis.spot`; what does not change with time is kept
+out of the window along time, so that what stands still does so for as long.
+
+References
+----------
+Galerne, Gousseau, Morel, "Random Phase Textures: Theory and Synthesis", IEEE TIP 2011; Xia, Ferradans, Peyré, Aujol,
+"Synthesizing and Mixing Stationary Gaussian Texture Models", SIAM J. Imaging Sciences 2014, for dynamic textures.
+"""
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+import scipy.fft
+from numpy.typing import NDArray
+
+from app.synthesis.periodic import SmoothSpectrum
+from app.synthesis.spectral import random_spectrum
+from app.synthesis.spot import Profile, make_spot, window
+from app.synthesis.spot_noise import transform
+from app.synthesis.team import Team
+from app.synthesis.video_phase import pair, rows_of_phase
+
+BAND = 2  # rows of the spectrum on either side of k₁ = 0 that its slice through time is the mean of
+
+Complex = NDArray[np.complex64]
+Real = NDArray[np.float32]
+Progress = Callable[[str, float], None]
+Film = NDArray[Any]
+
+
+def jump_share(frames: int, height: int, width: int, rows: list[int]) -> Complex:
+    """ŝ / Ĵ at these rows of the half spectrum, (frames, rows, width // 2 + 1)."""
+    k = 2 * np.pi * np.arange(frames) / frames
+    down, across = (4 * np.sin(np.pi * each) ** 2 for each in (np.array(rows) / height, np.fft.rfftfreq(width)))
+    below = 2 - 2 * np.cos(k)[:, None, None] + down[:, None] + across
+    if rows[0] == 0:
+        below[0, 0, 0] = np.inf
+    share: Complex = ((1 - np.exp(1j * k))[:, None, None] / below).astype(np.complex64)
+    return share
+
+
+def middle(film: Film, shape: tuple[int, int, int]) -> Film:
+    """Take the centre of a film, at most ``shape`` of it (a view)."""
+    starts = (max(0, (have - asked) // 2) for have, asked in zip(film.shape, shape, strict=False))
+    return film[tuple(slice(start, start + asked) for start, asked in zip(starts, shape, strict=True))]
+
+
+class MovingField:
+    """The noise of a film, made up to its last transform: `frames` gives it frame by frame, any number of times.
+
+    Parameters
+    ----------
+    film : ndarray, shape (T, H, W, C)
+        Finite; any range. Along an axis that is longer than the texture's, its centre is taken.
+    shape : tuple of int
+        Frames, height and width of the texture.
+    seed : int
+    alpha, profile
+        The spot's transition along an axis that is extended, see `app.synthesis.spot.window`.
+    team : Team
+    progress : callable ``(stage, part)``
+        Called between pieces of work with the part of all of it that is done; may raise.
+
+    Attributes
+    ----------
+    mean : ndarray of float64, shape (C,)
+    power : ndarray of float32, shape (height, width // 2 + 1)
+        Squared modulus of the texture, the sum over channels and frequencies in time.
+    power_in_time : ndarray of float32, shape (frames, width // 2 + 1)
+        The same over the few rows next to k₁ = 0, for every frequency in time: what moves steadily along x is a
+        straight line, and waves lie on the curve of their dispersion.
+    still : float
+        Part of the texture's variance that does not change with time, 0–1.
+    """
+
+    def __init__(
+        self,
+        film: Film,
+        shape: tuple[int, int, int],
+        *,
+        seed: int,
+        alpha: float,
+        profile: Profile,
+        team: Team,
+        progress: Progress,
+    ) -> None:
+        self.shape, self._seed, self._alpha, self._profile = shape, seed, alpha, profile
+        self._team, self._progress = team, progress
+        film = middle(film, shape)
+        self.mean = film.mean(axis=(0, 1, 2), dtype=np.float64)
+        spectrum = self._of_frames(film)
+        jump = spectrum[:, 0] - spectrum[:, -1]
+        if film.shape[:3] == shape:
+            self._in_time(spectrum, shape[2], ("random phase", 0.2, 1.0), jump=jump, randomise=True)
+        else:
+            self._in_time(spectrum, film.shape[2], ("periodic", 0.2, 0.4), jump=jump)
+            spectrum, still = self._extended(spectrum, film.shape[2])
+            self._in_time(spectrum, shape[2], ("random phase", 0.6, 1.0), still=still, randomise=True)
+        self._spectrum = spectrum
+
+    def frames(self) -> Iterator[Real]:
+        """Frame by frame, (height, width, C); values may lie outside the film's range."""
+        mean = self.mean.astype(np.float32)[:, None, None]
+        for index in range(self.shape[0]):
+            planes: Real = scipy.fft.irfft2(self._spectrum[:, index], s=self.shape[1:], workers=self._team.threads)
+            planes += mean
+            yield planes.transpose(1, 2, 0)
+
+    def _run(self, task: Callable[[int], None], count: int, stage: tuple[str, float, float]) -> None:
+        name, begin, end = stage
+        self._team.run(task, range(count), lambda part: self._progress(name, begin + (end - begin) * part))
+
+    def _of_frames(self, film: Film) -> Complex:
+        """Half spectra of the frames' periodic components without the mean, (C, T, H, W // 2 + 1)."""
+        frames, height, width, channels = film.shape
+        spectrum = np.empty((channels, frames, height, width // 2 + 1), np.complex64)
+        mean = self.mean.astype(np.float32)
+
+        def transform_frame(index: int) -> None:
+            h = film[index] - mean
+            spectrum[:, index] = scipy.fft.rfft2(h.transpose(2, 0, 1), workers=1)
+            spectrum[:, index] -= SmoothSpectrum(h).whole()
+
+        self._progress("periodic", 0.0)
+        self._run(transform_frame, frames, ("periodic", 0.0, 0.2))
+        return spectrum
+
+    def _in_time(
+        self,
+        spectrum: Complex,
+        width: int,
+        stage: tuple[str, float, float],
+        *,
+        jump: Complex | None = None,
+        still: Complex | None = None,
+        randomise: bool = False,
+    ) -> None:
+        """Go to frequencies in time and back, in place, row by row of the frames' spectra.
+
+        ``jump`` (C, H, columns) is that from the last frame to the first, which is taken out; ``still`` the spectrum of
+        what is to be added to every frame; with ``randomise`` the phase becomes random, and the mean 0.
+        """
+        _, frames, height, _ = spectrum.shape
+        flat = random_spectrum(height, width, self._seed) if randomise else None
+        measure = _Measure(spectrum.shape[1:], width) if randomise else None
+
+        def transform_rows(row: int) -> None:
+            rows = pair(row, height)
+            smooth = None if jump is None else jump_share(frames, height, width, rows) * jump[:, None, rows]
+            phase = None if flat is None else rows_of_phase((frames, height, width), row, flat, self._seed)
+            for channel, planes in enumerate(spectrum):
+                block: Complex = scipy.fft.fft(planes[:, rows], axis=0, overwrite_x=True, workers=1)
+                if smooth is not None:
+                    block -= smooth[channel]
+                if still is not None:
+                    block[0] += frames * still[channel, rows]
+                if phase is not None and measure is not None:
+                    if row == 0:
+                        block[0, 0, 0] = 0
+                    measure(row, rows, block)
+                    block *= phase
+                planes[:, rows] = scipy.fft.ifft(block, axis=0, overwrite_x=True, workers=1)
+
+        self._run(transform_rows, height // 2 + 1, stage)
+        if measure is not None:
+            self.power, self.power_in_time, self.still = measure.power, measure.in_time, measure.still
+
+    def _extended(self, spectrum: Complex, width: int) -> tuple[Complex, Complex]:
+        """Spectra of the extended spot's frames, (C, frames, height, columns), and of what stands still in it."""
+        channels, count, high, _ = spectrum.shape
+        frames, height, across = self.shape
+        fade = window(count, self._alpha, self._profile) if frames > count else np.ones(count)
+        # What stands still is the mean that leaves nothing of it in the rest, once that is faded in and out.
+        weights = (fade / fade.sum()).astype(np.float32)
+        average = np.einsum("cthw,t->chw", spectrum, weights)
+        gains = (fade * np.sqrt(frames / count)).astype(np.float32)
+        extended = np.zeros((channels, frames, height, across // 2 + 1), np.complex64)
+        top = (frames - count) // 2
+
+        def spread(planes: Complex) -> tuple[Complex, NDArray[np.float64]]:
+            """A frame's spectrum at the texture's size, but for its mean, and this."""
+            p: Real = scipy.fft.irfft2(planes, s=(high, width), workers=1)
+            spot = make_spot(p, p.mean((1, 2), dtype=np.float64), height, across, self._alpha, self._profile)
+            spread = np.stack([transform(plane, spot) for plane in spot.planes])
+            spread[:, 0, 0] = 0
+            return spread, spot.mean
+
+        def spread_frame(index: int) -> None:
+            frame, mean = spread(spectrum[:, index] - average)
+            frame[:, 0, 0] = height * across * mean
+            np.multiply(frame, gains[index], out=extended[:, top + index])
+
+        self._run(spread_frame, count, ("spot", 0.4, 0.6))
+        return extended, spread(average)[0]
+
+
+class _Measure:
+    """Sums of the squared modulus of a film's half spectrum, which it is given row by row from several threads."""
+
+    def __init__(self, shape: tuple[int, ...], width: int) -> None:
+        frames, height, columns = shape
+        self.power, self._still = (np.zeros((height, columns), np.float32) for _ in range(2))
+        self._band = np.zeros((min(BAND, height // 2) + 1, frames, columns), np.float32)
+        self._width = width
+
+    def __call__(self, row: int, rows: list[int], block: Complex) -> None:
+        squares = block.real**2 + block.imag**2
+        self.power[rows] += squares.sum(0)
+        self._still[rows] += squares[0]
+        if row < len(self._band):
+            self._band[row] += squares.sum(1)
+
+    @property
+    def in_time(self) -> Real:
+        total: Real = self._band.sum(0)
+        return total
+
+    @property
+    def still(self) -> float:
+        twice = np.full(self.power.shape[1], 2.0)
+        twice[0] = 1
+        if self._width % 2 == 0:
+            twice[-1] = 1
+        whole = float((self.power @ twice).sum())
+        return float((self._still @ twice).sum()) / whole if whole else 1.0
+
+
+def video_rpn(
+    film: Film,
+    frames: int | None = None,
+    height: int | None = None,
+    width: int | None = None,
+    *,
+    seed: int = 0,
+    alpha: float = 0.1,
+    window: Profile = "bump",
+    threads: int = 1,
+    progress: Progress | None = None,
+) -> Real:
+    """RPN of a film in three dimensions, of any length and size.
+
+    Parameters
+    ----------
+    film : ndarray, shape (T, H, W, C)
+        Any number of channels, any range, finite.
+    frames, height, width : int, optional
+        Of the texture; default: the film's. Along a longer axis the spot is extended (see `app.synthesis.spot`), along
+        a shorter one the film's centre is taken.
+    seed : int
+        Not negative; the result depends on nothing else.
+    alpha, window
+        The spot's transition, see `app.synthesis.spot.window`.
+    threads : int
+        The result does not depend on it.
+    progress : callable ``(stage, part)``, optional
+        Called between pieces of work; what it raises stops it.
+
+    Returns
+    -------
+    ndarray of float32, shape (frames, height, width, C)
+        Periodic in space and in time; values may lie outside the film's range.
+
+    Raises
+    ------
+    ValueError
+        If values are not finite.
+
+    Examples
+    --------
+    >>> film = np.random.default_rng(0).random((6, 16, 20, 3), np.float32)
+    >>> z = video_rpn(film, 8, 24, 20, seed=7)
+    >>> z.shape, bool(np.allclose(z.mean((0, 1, 2)), film.mean((0, 1, 2))))
+    ((8, 24, 20, 3), True)
+    """
+    if not np.isfinite(film).all():
+        raise ValueError("The film holds values that are not finite.")
+    shape = (frames or film.shape[0], height or film.shape[1], width or film.shape[2])
+    with Team(threads) as team:
+        field = MovingField(
+            film,
+            shape,
+            seed=seed,
+            alpha=alpha,
+            profile=window,
+            team=team,
+            progress=progress or (lambda stage, part: None),
+        )
+        return np.stack(list(field.frames()))
