@@ -2,6 +2,8 @@
 
 import io
 import os
+import struct
+import zlib
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any
@@ -83,13 +85,18 @@ def animation(film: Film, form: str, duration: int | Sequence[int] = 40, **optio
     """A film as GIF, PNG or WebP; GIF reduces it to 256 colours a frame."""
     images = [Image.fromarray(frame.squeeze() if frame.shape[2] == 1 else frame) for frame in film]
     if form == "GIF":
-        images = [image if image.mode == "L" else image.quantize(256) for image in images]
+        images = [image.quantize(256) if image.mode == "RGB" else image for image in images]
     written = io.BytesIO()
     kinds = {"lossless": True, "exact": True, "minimize_size": False, "kmax": 0} if form == "WEBP" else {}
     images[0].save(
         written, form, save_all=True, append_images=images[1:], duration=duration, loop=0, **(kinds | options)
     )
     return written.getvalue()
+
+
+def chunk(name: bytes, content: bytes) -> bytes:
+    """A chunk of a PNG file."""
+    return struct.pack(">I", len(content)) + name + content + struct.pack(">I", zlib.crc32(name + content))
 
 
 def psnr(film: NDArray[Any], other: NDArray[Any]) -> float:

@@ -10,12 +10,9 @@ import pytest
 from numpy.typing import NDArray
 
 from app.images.decode import Decoded, Limits, decode
+from tests.images.clips import chunk
 
 Picture = NDArray[np.unsignedinteger]
-
-
-def chunk(name: bytes, content: bytes) -> bytes:
-    return struct.pack(">I", len(content)) + name + content + struct.pack(">I", zlib.crc32(name + content))
 
 
 @pytest.fixture
