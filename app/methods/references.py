@@ -112,3 +112,11 @@ OPPENHEIM_LIM = Reference(
     "https://doi.org/10.1109/PROC.1981.12022",
     pages="529--541",
 )
+PATCHWORK = Reference(
+    "P. Harrison",
+    "Patchwork Texture Synthesis",
+    "Technical report, School of Computer Science and Software Engineering, Monash University",
+    2002,
+    "https://www.logarithmic.net/pfh/",
+    kind="incollection",
+)
