@@ -7,15 +7,28 @@ from typing import Any
 from pydantic import ValidationError
 
 from app.methods.fields import FormField, fields, requirement
-from app.methods.model import Method, MovingParams, StillParams
+from app.methods.model import LoopParams, Method, MovingParams, SeamlessParams, StillParams
 
 SHARED = tuple(StillParams.model_fields)  # width, height and seed: asked once for all methods
-MOVING = tuple(name for name in MovingParams.model_fields if name not in SHARED)  # and these once for moving ones
+FAMILIES = (
+    MovingParams,
+    LoopParams,
+    SeamlessParams,
+)  # each has all of the one before; asked once
+MOVING = tuple(entry for entry in fields(SeamlessParams) if entry.name not in SHARED)
 
 
 def shared(method: Method) -> tuple[str, ...]:
-    """Name the parameters of a method that are asked once for it and others."""
-    return SHARED + MOVING if issubclass(method.params, MovingParams) else SHARED
+    """Name the parameters of a method that are asked once for it and others.
+
+    Examples
+    --------
+    >>> from app.methods.registry import METHODS
+    >>> shared(METHODS["rpn"])
+    ('width', 'height', 'seed')
+    """
+    families = [family for family in FAMILIES if issubclass(method.params, family)]
+    return tuple((families[-1] if families else StillParams).model_fields)
 
 
 def own_fields(method: Method) -> tuple[FormField, ...]:

@@ -41,8 +41,8 @@ class Choices:
         return Rectangle((sample.width - width) // 2, (sample.height - height) // 2, width, height)
 
     def other(self, sample: Sample, number: int) -> str:
-        """Name the sample that input ``number`` has at first."""
-        others = [entry.id for entry in self.samples if entry.id != sample.id] or [sample.id]
+        """Name the sample that input ``number`` has at first: a photograph, which does for every further input."""
+        others = [entry.id for entry in self.samples if entry.id != sample.id and not entry.moving] or [sample.id]
         return others[(number - 2) % len(others)]
 
 

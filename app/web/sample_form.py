@@ -9,11 +9,11 @@ from app.errors import NotFoundError
 from app.experiments.model import Sample
 from app.images.crop import Rectangle
 from app.methods.fields import FormField, fields
-from app.methods.model import Method, MovingParams, StillParams, first_size
+from app.methods.model import Method, StillParams, first_size
 from app.methods.registry import METHODS
 from app.samples import BundledSample
 from app.web.drafts import SIZES, Draft
-from app.web.forms import MOVING, form_name, own_fields
+from app.web.forms import MOVING, SHARED, form_name, own_fields, shared
 from app.web.inputs import ORDINALS, SIDES, Choices, further, most, optional, prefix, slot
 
 
@@ -56,9 +56,10 @@ class MethodForm:
     """One method of the form.
 
     ``takes`` are the numbers of its inputs, ``moves`` those of them that are videos, and ``named`` their titles where
-    each has one of its own. ``follows`` says that its texture is as large as the first crop unless asked otherwise, and
-    not as the method finds right; ``open`` that something under "advanced" is not as usual. ``clips`` are bundled clips
-    to open it with instead, by title, where the page's sample is a still picture and that will not do.
+    each has one of its own; ``asks`` are the parameters that it shares with other moving ones. ``follows`` says that
+    its texture is as large as the first crop unless asked otherwise, and not as the method finds right; ``open`` that
+    something under "advanced" is not as usual. ``clips`` are bundled clips to open it with instead, by title, where
+    the page's sample is a still picture and that will not do.
     """
 
     method: Method
@@ -67,6 +68,7 @@ class MethodForm:
     takes: range
     moves: tuple[int, ...]
     named: tuple[str, ...]
+    asks: tuple[str, ...]
     follows: bool
     open: bool
     lacks_clip: bool
@@ -84,7 +86,7 @@ def form_context(sample: Sample, choices: Choices, draft: Draft) -> dict[str, An
         "sides": SIDES,
         "methods": [_method(method, draft, sample, choices) for method in METHODS.values()],
         "shared": fields(StillParams),
-        "moving": [entry for entry in fields(MovingParams) if entry.name in MOVING],
+        "moving": MOVING,
         "sizes": SIZES,
         "targets": {
             "method": f"method-{next(iter(METHODS))}",
@@ -136,6 +138,7 @@ def _method(method: Method, draft: Draft, sample: Sample, choices: Choices) -> M
         takes,
         tuple(number for number in takes if slot(method, number).moving),
         tuple(entry.title for entry in method.inputs) if len(takes) > 1 and not method.more else (),
+        tuple(name for name in shared(method) if name not in SHARED),
         method.size is first_size,
         any(name in draft.errors or draft.values.get(name, "") != default for name, default in names.items()),
         lacks_clip,

@@ -17,8 +17,7 @@ const chosen = () => form.elements.method.value;
 const radio = () => document.querySelector(`#method-${chosen()}`);
 const numbers = (fields) => ["x", "y", "width", "height"].map((side) => fields[side].value).join(",");
 const range = (prefix) => ["first", "count"].map((part) => form.elements[`${prefix}time.${part}`].value);
-const moving = () => radio().classList.contains("moving");
-const shared = () => (moving() ? [...document.querySelectorAll(".of-video [name]")] : []);
+const asks = (entry) => radio().classList.contains(`asks-${entry.name}`); // of those shared by moving methods
 const own = (method) => [...form.elements].filter((entry) => entry.name.startsWith(`${method}.`));
 
 /** An input's time range as the address says it: nothing of a photograph, or where it is all of the clip. */
@@ -36,7 +35,8 @@ function followCrop() {
   if (size.value !== "free") [width.value, height.value] = known ? [grown("width"), grown("height")] : ["", ""];
   const [w, h] = [width.value || (follows && crop.width.value), height.value || (follows && crop.height.value)];
   frames.placeholder = range("")[1];
-  const long = moving() ? `, ${frames.value || frames.placeholder} frames` : "";
+  const many = asks(frames) && (frames.value || frames.placeholder);
+  const long = many ? `, ${many} frames` : "";
   const name = document.querySelector(`[for=method-${chosen()}]`).firstChild.textContent;
   total.textContent = w && h ? `${name}, ${w} × ${h} pixels${long}` : name;
   clearTimeout(pending);
@@ -60,7 +60,7 @@ function keepInAddress() {
     if (height.value) query.set("height", height.value);
   }
   if (seed.value) query.set("seed", seed.value);
-  for (const entry of [...shared(), ...own(chosen())]) {
+  for (const entry of [...[...form.elements].filter(asks), ...own(chosen())]) {
     const value = entry.type === "checkbox" ? (entry.checked ? "on" : "") : entry.value;
     if (value !== entry.dataset.default) query.set(entry.name.split(".").at(-1), value);
   }
