@@ -18,7 +18,7 @@ from app.settings import ROOT, Settings
 from app.store.blobs import FileBlobs
 from app.store.sql import SqlStore
 from app.web import catalogue_pages, docs, health, method_pages, pages, problems, structure_page, uploads
-from app.web.api import events, experiments, methods, outputs, samples, structure, synthesize
+from app.web.api import check, events, experiments, methods, outputs, samples, structure, synthesize
 from app.web.head import HeadAsGet
 from app.web.limits import BodyLimit
 from app.web.metrics import CountRequests, Metrics
@@ -76,7 +76,7 @@ def create_app(settings: Settings | None = None, service: Service | None = None)
     app.state.stopping = asyncio.Event()
     app.state.upload_threads = anyio.CapacityLimiter(UPLOADS_AT_ONCE)
     problems.install(app, pages.render_error)
-    api = (methods, samples, structure, experiments, events, outputs, synthesize)
+    api = (methods, samples, structure, check, experiments, events, outputs, synthesize)
     for part in (*api, health, docs, pages, structure_page, method_pages, catalogue_pages):
         app.include_router(part.router)
     app.mount("/static", StaticFiles(directory=ROOT / "static"), name="static")

@@ -1,10 +1,12 @@
 """Everything that is measured: ``make bench``."""
 
-from benchmarks import kernel, laboratory, service
+from benchmarks import kernel, laboratory, patchwork, service
 
 if __name__ == "__main__":
     kernel.main()
     print()
     laboratory.main()
+    print()
+    patchwork.main()
     print()
     service.main()

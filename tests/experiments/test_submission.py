@@ -1,5 +1,6 @@
 """From a request of several inputs to a complete experiment."""
 
+from dataclasses import replace
 from datetime import UTC, datetime
 from typing import Any
 
@@ -7,13 +8,16 @@ import pytest
 
 from app.errors import InvalidInputError, TooLargeError
 from app.experiments.model import Experiment, Sample
-from app.experiments.submission import Allowed, NewExperiment, NewInput, prepare
-from app.images.crop import Rectangle
+from app.experiments.submission import Allowed, NewExperiment, NewInput, memory_of, prepare
+from app.images.crop import Frames, Rectangle
 
 SAMPLES = {
     name: Sample(name, "", width, height, channels, 8, False, datetime(2026, 3, 1, tzinfo=UTC))
     for name, (width, height, channels) in {"sand": (300, 200, 3), "wall": (120, 260, 1), "moss": (90, 80, 3)}.items()
 }
+
+
+ALLOWED = Allowed(1 << 20, 1 << 24, 1 << 30)
 
 
 def prepared(method: str, *names: str, crop: Rectangle | None = None, **parameters: Any) -> Experiment:
@@ -23,7 +27,7 @@ def prepared(method: str, *names: str, crop: Rectangle | None = None, **paramete
         "owner",
         sample=SAMPLES.__getitem__,
         transparent=lambda sample, crop, frames: False,
-        allowed=Allowed(1 << 20, 1 << 24, 1 << 30),
+        allowed=ALLOWED,
     )
 
 
@@ -75,3 +79,64 @@ def test_a_texture_that_a_method_could_not_hold_in_memory_is_refused(method: str
     else:
         with pytest.raises(TooLargeError, match=f"the method {method} makes at most 17"):
             large()
+
+
+CLIPS = {
+    "sea": Sample("sea", "", 64, 48, 3, 8, False, datetime(2026, 3, 1, tzinfo=UTC), frames=30, rate=15.0),
+    "still": SAMPLES["moss"],
+}
+
+
+def filmed(
+    method: str, name: str, time: Frames | None = None, allowed: Allowed = ALLOWED, **parameters: Any
+) -> Experiment:
+    return prepare(
+        NewExperiment(method, (NewInput(name, None, time),), parameters),
+        "owner",
+        sample=CLIPS.__getitem__,
+        transparent=lambda sample, crop, frames: False,
+        allowed=allowed,
+    )
+
+
+def test_a_clip_is_taken_whole_or_in_part_and_the_video_is_as_long() -> None:
+    whole, part = filmed("video-rpn", "sea"), filmed("video-rpn", "sea", Frames(5, 12))
+    assert (whole.inputs[0].frames, whole.parameters["frames"]) == (Frames(0, 30), 30)
+    assert (part.inputs[0].frames, part.parameters["frames"]) == (Frames(5, 12), 12)
+    assert filmed("video-rpn", "sea", frames=40).parameters["frames"] == 40
+
+
+def test_a_still_method_takes_one_frame_of_a_clip() -> None:
+    assert filmed("rpn", "sea").inputs[0].frames == Frames(0, 1)
+    assert filmed("rpn", "sea", Frames(7, 1)).inputs[0].frames == Frames(7, 1)
+
+
+@pytest.mark.parametrize(
+    ("method", "name", "frames", "field", "words"),
+    [
+        ("video-rpn", "still", None, "inputs.0.sample", "upload an MP4"),
+        ("video-rpn", "sea", Frames(20, 11), "inputs.0.frames", "reaches outside the sample, which has 30 frames"),
+        ("video-rpn", "sea", Frames(0, 0), "inputs.0.frames", "at least 1 frame"),
+        ("video-rpn", "sea", Frames(3, 1), "inputs.0.frames", "at least 2 frames"),
+        ("rpn", "sea", Frames(0, 2), "inputs.0.frames", "give a time range of 1 frame"),
+        ("rpn", "still", Frames(1, 1), "inputs.0.frames", "which has 1 frame "),
+    ],
+)
+def test_a_time_range_that_cannot_be_is_refused_where_it_stands(
+    method: str, name: str, frames: Frames | None, field: str, words: str
+) -> None:
+    with pytest.raises(InvalidInputError, match=words) as refused:
+        filmed(method, name, frames)
+    assert refused.value.field == field
+
+
+def test_a_video_of_too_many_pixels_or_bytes_is_refused_before_it_is_queued() -> None:
+    """A frame may be as large as a picture; all of them together, and the memory they take, have limits too."""
+    pixels = 64 * 48 * 30
+    assert filmed("video-rpn", "sea", allowed=replace(ALLOWED, film_pixels=pixels))
+    with pytest.raises(TooLargeError, match=r"30 frames of 64 × 48 .* ask for fewer frames"):
+        filmed("video-rpn", "sea", allowed=replace(ALLOWED, film_pixels=pixels - 1))
+    needed = memory_of(filmed("video-rpn", "sea"), CLIPS.__getitem__)
+    assert filmed("video-rpn", "sea", allowed=replace(ALLOWED, memory=needed))
+    with pytest.raises(TooLargeError, match=r"would need about .* MB of memory.*shorter or smaller crop"):
+        filmed("video-rpn", "sea", allowed=replace(ALLOWED, memory=needed - 1))

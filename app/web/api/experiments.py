@@ -16,7 +16,7 @@ from app.experiments.submission import NewExperiment
 from app.methods.registry import METHODS
 from app.web.api.bodies import IDENTIFIER, Body, InputBody, ListedBody
 from app.web.api.prefer import LONGEST, wait_seconds
-from app.web.api.records import API, ExperimentList, ExperimentRecord, PlanRecord
+from app.web.api.records import API, ExperimentList, ExperimentRecord
 from app.web.deps import ServiceDep, TokenDep, base_url, remember_owner
 from app.web.openapi import EXAMPLE_METHOD, EXAMPLE_SAMPLE, OWNER, parameters_schema, problems
 from app.web.stopping import unless_stopping
@@ -194,17 +194,6 @@ def list_experiments(
     return ExperimentList(
         experiments=[record_of(request, service, experiment) for experiment in page.experiments], next=following
     )
-
-
-@router.post(
-    "/check",
-    dependencies=[Depends(require_json)],
-    summary="Check before running",
-    responses=problems(404, 422),
-)
-async def check_experiment(body: ExperimentBody, service: ServiceDep) -> PlanRecord:
-    """Say what it would make and how much memory it would take, or what is wrong with it; nothing is run."""
-    return PlanRecord(**vars(await run_in_threadpool(lambda: service.check(body.requested()))))
 
 
 @router.get(
