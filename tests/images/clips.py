@@ -43,6 +43,7 @@ def video(
     ticks: Sequence[int] | None = None,
     stream: Callable[[Any], None] | None = None,
     options: dict[str, str] | None = None,
+    container: dict[str, str] | None = None,
 ) -> bytes:
     """A film as a file; ``ticks`` are when its frames are shown, and ``stream`` changes the stream before it is coded.
 
@@ -50,7 +51,7 @@ def video(
     """
     written = io.BytesIO()
     source = {1: "gray", 3: "rgb24", 4: "rgba"}[film.shape[3]]
-    with av.open(written, "w", format=form) as file:
+    with av.open(written, "w", format=form, options=container or {}) as file:
         track = file.add_stream(codec, rate=rate, options=options or {})
         track.height, track.width, track.pix_fmt = *film.shape[1:3], pixels
         if tagged and not pixels.startswith(("gbr", "rgb")):

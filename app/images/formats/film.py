@@ -51,6 +51,7 @@ MATRICES = {
 HD_LINES = 720
 NEUTRAL = 128
 HIGH_DYNAMIC_RANGE = (ColorTrc.SMPTE2084, ColorTrc.ARIB_STD_B67)
+PADDING = 1 << 16  # pixels
 OBLONG = 4  # pixels said to be so much wider than high, or higher than wide, are a mistake
 DISPLAY_MATRIX = struct.Struct("=9i")
 # By whether the axes are exchanged, then x and then y mirrored: EXIF's orientation.
@@ -97,6 +98,8 @@ class _Film:
 
     def __init__(self, data: bytes, container: Container, max_pixels: int, limits: ClipLimits) -> None:
         self._data, self._demuxer, self._max_pixels, self._limits = data, container.demuxer, max_pixels, limits
+        # Decoders count padded frames; this is only to keep a lie about the size from taking memory.
+        self._coded_pixels = 2 * max_pixels + PADDING
         with _telling(), self._open() as opened:
             stream = _stream(opened)
             self._check(opened, stream)
@@ -159,7 +162,7 @@ class _Film:
             io.BytesIO(self._data),
             "r",
             format=self._demuxer,
-            options={"protocol_whitelist": "", "codec_whitelist": DECODERS, "max_pixels": str(self._max_pixels)},
+            options={"protocol_whitelist": "", "codec_whitelist": DECODERS, "max_pixels": str(self._coded_pixels)},
             metadata_errors="replace",
         )
 
@@ -179,7 +182,7 @@ class _Film:
         if with_alpha and stream.metadata.get("alpha_mode") == "1":
             codec = CodecContext.create(with_alpha, "r")
         assert isinstance(codec, VideoCodecContext)
-        codec.options = {"err_detect": "explode", "max_pixels": str(self._max_pixels)}
+        codec.options = {"err_detect": "explode", "max_pixels": str(self._coded_pixels)}
         codec.thread_count, codec.thread_type = THREADS, "AUTO"
         return codec
 
