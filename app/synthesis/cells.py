@@ -19,7 +19,7 @@ P. Harrison, "Patchwork Texture Synthesis", Monash University technical report, 
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import ceil, inf
+from math import ceil, inf, log
 from typing import NamedTuple
 
 import numpy as np
@@ -29,6 +29,7 @@ from numpy.typing import NDArray
 from app.synthesis.cell_shapes import REACH, Axis, extents, reach
 
 LEFT_OUT = 1 / 512  # of a pixel: a part that is smaller changes an 8-bit value by less than a half
+LOG_LEFT_OUT = np.float32(log(LEFT_OUT))
 BLEND = 1 / 16  # of a pixel: a cell's blend zone is where its part is larger
 AT_CENTRE = 30.0  # logarithm of how much heavier a centre is than the pixel beside it
 
@@ -152,7 +153,13 @@ class Cells:
         parts = []
         for part in found:
             weight = part.weight - largest[part.rows, part.columns]
-            parts.append(part._replace(weight=np.exp(weight, out=weight)))
+            kept = weight > LOG_LEFT_OUT
+            rows, columns = np.flatnonzero(kept.any(axis=1)), np.flatnonzero(kept.any(axis=0))
+            if rows.size:
+                weight = np.exp(weight[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1])
+                top, left = part.rows.start + int(rows[0]), part.columns.start + int(columns[0])
+                there = slice(top, top + weight.shape[0]), slice(left, left + weight.shape[1])
+                parts.append(Part(part.centre, *there, weight, part.source))
         return parts
 
     def sources(self, height: int, width: int, seed: int) -> Ints:

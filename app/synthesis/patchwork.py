@@ -17,9 +17,10 @@ from numpy.typing import NDArray
 
 from app.synthesis.cells import Cells, Window, jittered_cells
 from app.synthesis.field import Progress, into, row_blocks
+from app.synthesis.patches import Patches
 from app.synthesis.team import Team
 
-TILE = 128  # columns that are joined at once, so that all of their sums stay in the processor's cache
+TILE = 1024  # columns that are joined at once: all of their sums stay in the cache
 
 Blend = Literal["deviation", "feather", "sharp"]
 Real = NDArray[np.float32]
@@ -52,18 +53,14 @@ class Patchwork:
 
     def __init__(self, h: Real, cells: Cells, *, blend: Blend = "deviation", seed: int = 0) -> None:
         self.cells, self._blend = cells, blend
-        height, width, _ = h.shape
-        self.sources = cells.sources(height, width, seed)
-        margin = cells.margin(self.sources, height, width)
-        self._start = self.sources[cells.cell] + margin
+        self.sources = cells.sources(*h.shape[:2], seed)
         self._mean: Real = h.mean((0, 1), np.float64).astype(np.float32)
-        centred = h.transpose(2, 0, 1) - self._mean[:, None, None]
-        self._planes = np.pad(centred, [(0, 0), (margin, margin), (margin, margin)], "symmetric")
+        self._patches = Patches(h.transpose(2, 0, 1) - self._mean[:, None, None], cells, self.sources)
 
     def rows(self, top: int, bottom: int) -> Real:
         """Rows ``top`` to ``bottom`` − 1 of the texture, shape (C, bottom − top, width), any time and in any order."""
         width = self.cells.width
-        out = np.zeros((len(self._planes), bottom - top, width), np.float32)
+        out = np.zeros((len(self._mean), bottom - top, width), np.float32)
         among = self.cells.reaching(Window(top, bottom, 0, width))
         for left in range(0, width, TILE):
             window = Window(top, bottom, left, min(left + TILE, width))
@@ -73,17 +70,14 @@ class Patchwork:
 
     def _join(self, out: Real, window: Window, among: NDArray[np.int64]) -> None:
         norm = np.zeros(out.shape[1:], np.float32)
-        room = np.empty_like(norm)
+        room = np.empty(norm.size, np.float32)
         for part in self.cells.parts(window, among):
-            y, x = self._start[part.centre] + part.source
-            patch = self._planes[
-                :, y + part.rows.start : y + part.rows.stop, x + part.columns.start : x + part.columns.stop
-            ]
+            patch = self._patches.of(part)
             there = (part.rows, part.columns)
             if self._blend == "sharp":
                 np.copyto(out[:, *there], patch, where=part.weight == 1)
                 continue
-            term = room[there]
+            term = room[: part.weight.size].reshape(part.weight.shape)
             norm[there] += part.weight if self._blend == "feather" else np.square(part.weight, out=term)
             for plane, source in zip(out, patch, strict=True):
                 plane[there] += np.multiply(source, part.weight, out=term)
