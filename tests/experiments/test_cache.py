@@ -38,9 +38,12 @@ def test_other_files_are_written_meanwhile(tmp_path: Path) -> None:
         go_on.wait(PATIENCE)
         path.write_bytes(b"slow")
 
+    def quick(path: Path) -> None:
+        path.write_bytes(b"quick")
+
     with ThreadPoolExecutor(1) as pool:
         first = pool.submit(cache.file, "slow.mp4", slow)
-        assert cache.file("quick.mp4", lambda path: path.write_bytes(b"quick") and None).read_bytes() == b"quick"
+        assert cache.file("quick.mp4", quick).read_bytes() == b"quick"
         assert not first.done()
         go_on.set()
         assert first.result(PATIENCE).read_bytes() == b"slow"

@@ -40,6 +40,29 @@ def picture(width: int = 48, height: int = 40, *, seed: int = 1, form: str = "PN
     return file.getvalue()
 
 
+def film(count: int = 6, width: int = 48, height: int = 40, *, seed: int = 1, alpha: bool = False) -> np.ndarray:
+    """The frames (T, H, W, C) of a clip of noise."""
+    return np.random.default_rng(seed).integers(60, 200, (count, height, width, 4 if alpha else 3), np.uint8)
+
+
+def animation(frames: np.ndarray, *, rate: float = 10) -> bytes:
+    """A clip as a file, APNG, which keeps every value."""
+    first, *others = (Image.fromarray(frame) for frame in frames)
+    file = BytesIO()
+    first.save(file, "PNG", save_all=True, append_images=others, duration=1000 / rate)
+    return file.getvalue()
+
+
+@pytest.fixture(scope="session", name="film")
+def film_factory() -> Callable[..., np.ndarray]:
+    return film
+
+
+@pytest.fixture(scope="session", name="animation")
+def animation_factory() -> Callable[..., bytes]:
+    return animation
+
+
 @pytest.fixture(scope="session", name="picture")
 def picture_factory() -> Callable[..., bytes]:
     return picture
@@ -183,6 +206,12 @@ def serving_fixture() -> Callable[[FastAPI], Any]:
 def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
     with serve(tmp_path_factory.mktemp("site")) as made:
         yield made
+
+
+@pytest.fixture(scope="session")
+def clip(site: Site) -> str:
+    """The id of an uploaded clip: `film()`, 48 × 40 pixels, 6 frames, 10 a second."""
+    return str(site.upload(animation(film()), "clip.png")["id"])
 
 
 @pytest.fixture(scope="session")
