@@ -11,6 +11,7 @@ from app.methods.modulus_phase import MODULUS_PHASE
 from app.methods.rayleigh import RAYLEIGH
 from app.methods.rpn import RPN
 from app.methods.texton import TEXTON
+from app.methods.video_patchwork import VIDEO_PATCHWORK
 from app.methods.video_rpn import VIDEO_RPN
 
 METHODS: dict[str, Method] = {
@@ -24,6 +25,7 @@ METHODS: dict[str, Method] = {
     "heeger-bergen": HEEGER_BERGEN,
     "efros-leung": EFROS_LEUNG,
     "video-rpn": VIDEO_RPN,
+    "video-patchwork": VIDEO_PATCHWORK,
 }
 
 

@@ -19,27 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Real = NDArray[np.float32]
-Index = NDArray[np.int64]
-
-
-def average_image(film: NDArray[np.uint8]) -> Real:
-    """Mean of every pixel over time, A(x).
-
-    It is exact for a film whose frames are all equal, so that such a film stays as it is.
-
-    Parameters
-    ----------
-    film : ndarray of uint8, shape (T, H, W, C)
-
-    Returns
-    -------
-    ndarray of float32, shape (H, W, C)
-    """
-    total = np.zeros(film.shape[1:], np.uint32)
-    for frame in film:
-        total += frame
-    average: Real = (total / len(film)).astype(np.float32)
-    return average
+Ints = NDArray[np.int64]
 
 
 def longest_interval(clip: int, frames: int, loop: bool) -> int:
@@ -69,8 +49,8 @@ class Mix:
     ``first`` and ``second`` are frames of the clip; α² + β² = 1.
     """
 
-    first: Index
-    second: Index
+    first: Ints
+    second: Ints
     alpha: Real
     beta: Real
 
@@ -118,17 +98,31 @@ class Transitions:
 
     def at(self, frame: int) -> Mix:
         """What frame number ``frame``, 0 ≤ frame < ``frames``, of every sequence is made of."""
-        rows = np.arange(len(self._p))
-        part = int(np.searchsorted(self._edges, frame, side="right")) - 1
-        column = np.where(self._p[:, part] <= frame, part, part - 1)
-        begin, end = self._p[rows, column], self._p[rows, column + 1]
-        u = (frame - begin) / (end - begin)
-        w1, w2 = 0.5 + 0.5 * np.cos(np.pi * u), 0.5 - 0.5 * np.cos(np.pi * u)
+        rows, column = self._interval(frame)
+        w1, w2 = self._weights(frame, rows, column)
         scale = 1 / np.hypot(w1, w2)
         first = frame + self._shift[rows, column]
         # Where a sequence is at a transition point, the other part counts for nothing and may lie outside the clip.
-        second = np.where(begin == frame, first, frame + self._shift[rows, column + 1])
+        second = np.where(w2 == 0, first, frame + self._shift[rows, column + 1])
         return Mix(first, second, (w1 * scale).astype(np.float32), (w2 * scale).astype(np.float32))
+
+    def sources(self, frame: int) -> NDArray[np.float64]:
+        """Where in the clip every sequence's frame comes from, w₁ q_i + w₂ q_{i+1}: for pictures."""
+        rows, column = self._interval(frame)
+        w1, w2 = self._weights(frame, rows, column)
+        q = self._p + self._shift
+        between: NDArray[np.float64] = w1 * q[rows, column] + w2 * q[rows, column + 1]
+        return between
+
+    def _interval(self, frame: int) -> tuple[Ints, Ints]:
+        """Every sequence and the number of the transition point that a frame follows in it."""
+        part = int(np.searchsorted(self._edges, frame, side="right")) - 1
+        return np.arange(len(self._p)), np.where(self._p[:, part] <= frame, part, part - 1)
+
+    def _weights(self, frame: int, rows: Ints, column: Ints) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        begin, end = self._p[rows, column], self._p[rows, column + 1]
+        cosine = np.cos(np.pi * (frame - begin) / (end - begin))
+        return 0.5 + 0.5 * cosine, 0.5 - 0.5 * cosine
 
 
 class _Arrangement:

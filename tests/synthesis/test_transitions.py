@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from app.synthesis.transitions import Transitions, average_image, longest_interval
+from app.synthesis.transitions import Transitions, longest_interval
 
 LOOP = pytest.mark.parametrize("loop", [True, False], ids=["loop", "no loop"])
 
@@ -99,13 +99,3 @@ def test_the_weights_are_the_cosines_of_the_report():
         u = (frame - begin) / (end - begin)
         alpha, beta = float(mixes[frame].alpha[0]), float(mixes[frame].beta[0])
         assert alpha / (alpha + beta) == pytest.approx(0.5 + 0.5 * np.cos(np.pi * u), abs=1e-6)
-
-
-def test_the_average_image_of_a_film_that_stands_still_is_its_frame_exactly():
-    frame = np.random.default_rng(2).integers(0, 256, (9, 7, 3), np.uint8)
-    assert (average_image(np.broadcast_to(frame, (53, 9, 7, 3))) == frame).all()
-
-
-def test_the_average_image_is_the_mean_over_time():
-    film = np.random.default_rng(3).integers(0, 256, (11, 5, 6, 1), np.uint8)
-    np.testing.assert_allclose(average_image(film), film.mean(0), rtol=1e-6)

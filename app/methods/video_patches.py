@@ -1,0 +1,150 @@
+"""What the methods that put patches of a clip together share: refusals, memory, and pictures."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.errors import InvalidInputError
+from app.images.png import encode_png
+from app.images.video.cube import VideoCube
+from app.methods.films import texture_film
+from app.methods.model import Context, Picture, Size, Source
+from app.methods.pictures import encode
+from app.synthesis.cell_shapes import reach
+from app.synthesis.cells import LEFT_OUT, Window
+from app.synthesis.video_patchwork import in_order
+
+Real = NDArray[np.float32]
+Painter = Callable[[Window], Callable[[int], Real]]  # of a window, then of a frame
+
+LEAST_GRID = 4
+HELD = 8  # frames at a time, float32, with what is on the way to the encoders
+
+
+def refuse_small(size: Size, grid: int, needs: Callable[[int], tuple[int, int]]) -> None:
+    """Refuse a crop that does not hold patches of a grid, with the largest grid that fits.
+
+    Parameters
+    ----------
+    size : Size
+        Of the crop.
+    grid : int
+    needs : callable ``(grid) -> (width, height)``
+        Pixels that the crop must have.
+
+    Raises
+    ------
+    InvalidInputError
+        At ``parameters.grid``.
+    """
+
+    def fits(grid: int) -> bool:
+        width, height = needs(grid)
+        return width <= size.width and height <= size.height
+
+    if not fits(grid):
+        largest = next((smaller for smaller in range(grid - 1, LEAST_GRID - 1, -1) if fits(smaller)), None)
+        width, height = needs(grid)
+        raise InvalidInputError(
+            f"Patches of grid {grid} need a crop of at least {width} × {height} pixels, and this one has "
+            f"{size.width} × {size.height}: take "
+            + (f"a grid of at most {largest}, or a larger crop." if largest else "a larger crop."),
+            "parameters.grid",
+        )
+
+
+def refuse_short(size: Size, frames: int, interval: int, longest: int) -> None:
+    """Refuse a clip that is too short for an interval, with the longest that fits.
+
+    Parameters
+    ----------
+    size : Size
+        Of the clip.
+    frames : int
+        Of the output; an interval is never longer.
+    interval, longest : int
+
+    Raises
+    ------
+    InvalidInputError
+        At ``parameters.interval``.
+    """
+    if min(interval, frames) > longest:
+        raise InvalidInputError(
+            f"A clip of {size.frames} frames is too short for {frames} frames with transitions every {interval}: take "
+            f"an interval of at most {longest}, or a longer time range.",
+            "parameters.interval",
+        )
+
+
+def textured(
+    frame: Callable[[int], Real], shape: tuple[int, int, int], source: Source, context: Context
+) -> Iterator[Picture]:
+    """The files of a video texture, from 0 to 0.86 of the run.
+
+    Parameters
+    ----------
+    frame : callable
+        Makes the frame of a number, (H, W, C).
+    shape : tuple of int
+        Frames, height and width.
+    source : Source
+        The clip, whose rate and channels are the texture's.
+    context : Context
+    """
+    assert source.film is not None
+    frames, height, width = shape
+    made = in_order(frame, frames, context.threads, lambda part: context.progress("frames", 0.02 + 0.76 * part))
+    yield from texture_film(
+        made,
+        width=width,
+        height=height,
+        channels=source.size.channels,
+        count=frames,
+        rate=source.film.rate,
+        context=replace(context, progress=context.between(0.78, 0.86)),
+    )
+
+
+def average_picture(film: NDArray[np.uint8], context: Context) -> Picture:
+    """The clip's mean over time, A(x)."""
+    return encode("average", "Average image of the clip", film.mean(0, np.float32), 255, context)
+
+
+def cells_cube(painter: Painter, shape: tuple[int, int, int], context: Context) -> Picture:
+    """The cells in their sources' colours, as a video cube; stage ``cells``, 0 to 1."""
+    frames, height, width = shape
+    cube = VideoCube(width, height, 3, frames)
+    bottom, right = painter(Window(height - 1, height, 0, width)), painter(Window(0, height, width - 1, width))
+    painted = np.zeros((height, width, 3), np.uint8)
+    for number in range(frames):
+        context.progress("cells", number / frames)
+        if number < frames - 1:
+            painted[-1:], painted[:, -1:] = bottom(number), right(number)
+        else:
+            painted[:] = painter(Window(0, height, 0, width))(number)
+        cube.add(painted)
+    picture = cube.picture()
+    return Picture(
+        "cells", "Cells over time, coloured by source", picture.shape[1], picture.shape[0], encode_png(picture)
+    )
+
+
+def film_bytes(size: Size) -> int:
+    """Bytes of a clip."""
+    return size.frames * size.channels * size.height * size.width
+
+
+def patchwork_bytes(size: Size, height: int, width: int, grid: int, sharpness: float) -> int:
+    """Bytes that a two-stage synthesis of frames of this size holds, at most.
+
+    The boxes of the cells' weights are at most 2r wide and overlap as often as that is more than a grid; sources may
+    reach r over the border.
+    """
+    r = reach(grid, sharpness, LEFT_OUT)
+    margins = replace(size, width=size.width + 2 * r, height=size.height + 2 * r)
+    average = film_bytes(replace(margins, frames=1))
+    weights = 4 * round((2 * r / grid) ** 2 * height * width)
+    return film_bytes(size) + film_bytes(margins) + 16 * average + weights + HELD * 4 * size.channels * height * width

@@ -1,0 +1,166 @@
+"""Patchwork of a video whose patches stand still: what stands still in the clip stands still in the output.
+
+First stage: every cell has a sequence of its own, made of the clip's frames rearranged in time
+(`app.synthesis.transitions`). Second stage: every frame is a patchwork of the sequences' frames with the same
+arrangement of cells. The two are combined: no sequence is ever stored. With the weights w_i of the cells, ŵ_i = w_i /
+√(Σ w_i²), α and β of the transitions and the average image A,
+
+    O(x, t) = Σ ŵ_i (α I(x_i, t₁) + β I(x_i, t₂) + (1 − α − β) A(x_i) − a_i) + Σ a_i w_i / Σ w_i,   x_i = x − p_i + q_i,
+
+where a_i is the mean colour that patch i varies about: that of the clip in a texture, a local one in a transfer.
+
+References
+----------
+Harrison, "Patchwork texture synthesis", 2002, sections 4 and 5, equations (2), (6) and (7).
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.synthesis.cells import LEFT_OUT, Cells, Part
+from app.synthesis.team import Team
+from app.synthesis.transitions import Transitions
+
+Real = NDArray[np.float32]
+Ints = NDArray[np.int64]
+
+STRIP = 32  # rows; the slighter the strips, the less of them is outside a round cell, and the more calls they take
+
+
+class Clip:
+    """A film as planes with a mirrored margin, and its average image.
+
+    Parameters
+    ----------
+    film : ndarray of uint8, shape (T, H, W, C)
+    margin : int
+        Pixels by which patches reach over its border.
+
+    Attributes
+    ----------
+    planes : ndarray of uint8, shape (T, C, H + 2 margin, W + 2 margin)
+    average : ndarray of float32, shape (C, H + 2 margin, W + 2 margin)
+        A(x), the mean of every pixel over time; exact for a film whose frames are all equal, which so stays as it is.
+    margin : int
+    """
+
+    def __init__(self, film: NDArray[np.uint8], margin: int = 0) -> None:
+        frames, height, width, channels = film.shape
+        self.planes = np.empty((frames, channels, height + 2 * margin, width + 2 * margin), np.uint8)
+        total = np.zeros(self.planes.shape[1:], np.uint32)
+        around = [(0, 0), (margin, margin), (margin, margin)]
+        for planes, frame in zip(self.planes, film, strict=True):
+            planes[:] = np.pad(frame.transpose(2, 0, 1), around, mode="symmetric")
+            total += planes
+        self.average: Real = (total / frames).astype(np.float32)
+        self.margin = margin
+
+
+@dataclass(frozen=True)
+class _Patch:
+    """Where a cell, or a part of it, lies in a frame and in the clip, and its normalised weights."""
+
+    cell: int
+    place: tuple[slice, slice]
+    source: tuple[slice, slice]
+    weight: Real
+
+
+class VideoPatchwork:
+    """A video patchwork, of which any frame can be computed.
+
+    Parameters
+    ----------
+    clip : Clip
+        With the margin that ``cells`` ask for with these sources.
+    cells : Cells
+    sources : ndarray of int, shape (count of cells, 2)
+        q_i in the clip without its margin.
+    means : ndarray of float32, shape (count of cells, C)
+        a_i.
+    transitions : Transitions
+        A sequence for each cell.
+    """
+
+    def __init__(self, clip: Clip, cells: Cells, sources: Ints, means: Real, transitions: Transitions) -> None:
+        self._clip, self._transitions = clip, transitions
+        shape = (cells.height, cells.width)
+        parts = cells.parts(cells.plane)
+        totals, squares = np.zeros(shape, np.float32), np.zeros(shape, np.float32)
+        for part in parts:
+            totals[part.rows, part.columns] += part.weight
+            squares[part.rows, part.columns] += part.weight**2
+        norm = 1 / np.sqrt(squares)
+        self._still: Real = np.zeros((len(clip.average), *shape), np.float32)
+        self._patches = []
+        for part in parts:
+            place = part.rows, part.columns
+            mean = means[cells.cell[part.centre]][:, None, None]
+            self._still[:, *place] += mean * (part.weight / totals[place])
+            part.weight[:] *= norm[place]
+        self._patches = [patch for part in parts for patch in _strips(part, cells, sources + clip.margin)]
+        for patch in self._patches:
+            self._still[:, *patch.place] -= means[patch.cell][:, None, None] * patch.weight
+
+    def frame(self, number: int) -> Real:
+        """Frame ``number`` of the output, (H, W, C), values about those of the clip and sometimes beyond."""
+        mix = self._transitions.at(number)
+        made = self._still.copy()
+        for patch in self._patches:
+            source = slice(None), *patch.source
+            alpha, beta = mix.alpha[patch.cell], mix.beta[patch.cell]
+            values = self._clip.planes[mix.first[patch.cell]][source] * alpha
+            if beta:
+                values += self._clip.planes[mix.second[patch.cell]][source] * beta
+                values += self._clip.average[source] * (1 - alpha - beta)
+            values *= patch.weight
+            made[:, *patch.place] += values
+        return made.transpose(1, 2, 0)
+
+
+def _strips(part: Part, cells: Cells, sources: Ints) -> Iterator[_Patch]:
+    """A cell's part in strips, without the columns in which all its weights are too small to be seen."""
+    cell = int(cells.cell[part.centre])
+    y, x = (sources[cell] + part.source).tolist()
+    for top in range(0, len(part.weight), STRIP):
+        strip = part.weight[top : top + STRIP]
+        seen = np.flatnonzero((strip >= LEFT_OUT).any(0))
+        if not len(seen):
+            continue
+        first, last = int(seen[0]), int(seen[-1]) + 1
+        rows = slice(part.rows.start + top, part.rows.start + top + len(strip))
+        columns = slice(part.columns.start + first, part.columns.start + last)
+        source = slice(rows.start + y, rows.stop + y), slice(columns.start + x, columns.stop + x)
+        yield _Patch(cell, (rows, columns), source, strip[:, first:last].copy())
+
+
+def in_order(frame: Callable[[int], Real], count: int, threads: int, done: Callable[[float], None]) -> Iterator[Real]:
+    """Frames 0 … count − 1, of which as many are made, and held, at a time as there are threads.
+
+    Parameters
+    ----------
+    frame : callable
+        Makes the frame of a number.
+    count : int
+    threads : int
+    done : callable
+        Called with the part that is done, 0 to 1.
+    """
+    made: dict[int, Real] = {}
+
+    def make(number: int) -> None:
+        made[number] = frame(number)
+
+    def report(numbers: range, part: float) -> None:
+        done((numbers.start + part * len(numbers)) / count)
+
+    with Team(threads) as team:
+        for first in range(0, count, threads):
+            numbers = range(first, min(first + threads, count))
+            team.run(make, numbers, partial(report, numbers))
+            for number in numbers:
+                yield made.pop(number)
