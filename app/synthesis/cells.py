@@ -154,10 +154,10 @@ class Cells:
         for part in found:
             weight = part.weight - largest[part.rows, part.columns]
             kept = weight > LOG_LEFT_OUT
-            rows, columns = np.flatnonzero(kept.any(axis=1)), np.flatnonzero(kept.any(axis=0))
-            if rows.size:
-                weight = np.exp(weight[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1])
-                top, left = part.rows.start + int(rows[0]), part.columns.start + int(columns[0])
+            down, across = np.flatnonzero(kept.any(axis=1)).tolist(), np.flatnonzero(kept.any(axis=0)).tolist()
+            if down:
+                weight = np.exp(weight[down[0] : down[-1] + 1, across[0] : across[-1] + 1])
+                top, left = part.rows.start + down[0], part.columns.start + across[0]
                 there = slice(top, top + weight.shape[0]), slice(left, left + weight.shape[1])
                 parts.append(Part(part.centre, *there, weight, part.source))
         return parts

@@ -21,7 +21,8 @@ class Patches:
     """
 
     def __init__(self, planes: Real, cells: Cells, sources: NDArray[np.int64]) -> None:
-        margin = cells.margin(sources, *planes.shape[1:])
+        _, height, width = planes.shape
+        margin = cells.margin(sources, height, width)
         self._planes = np.pad(planes, [(0, 0), (margin, margin), (margin, margin)], "symmetric")
         self._start = sources[cells.cell] + margin
 

@@ -53,7 +53,8 @@ class Patchwork:
 
     def __init__(self, h: Real, cells: Cells, *, blend: Blend = "deviation", seed: int = 0) -> None:
         self.cells, self._blend = cells, blend
-        self.sources = cells.sources(*h.shape[:2], seed)
+        height, width, _ = h.shape
+        self.sources = cells.sources(height, width, seed)
         self._mean: Real = h.mean((0, 1), np.float64).astype(np.float32)
         self._patches = Patches(h.transpose(2, 0, 1) - self._mean[:, None, None], cells, self.sources)
 
