@@ -1,4 +1,4 @@
-"""From a method's frames to its files."""
+"""From a method's frames to its films."""
 
 from collections.abc import Iterable, Iterator
 from typing import Any, NamedTuple
@@ -15,8 +15,6 @@ from app.methods.model import Context, Picture, Source
 
 
 class _File(NamedTuple):
-    """A file of a film."""
-
     name: str
     title: str
     kind: Kind
@@ -25,54 +23,70 @@ class _File(NamedTuple):
 
 TEXTURE = (
     _File("texture", "Texture", "webm", "video/webm"),
-    _File("texture-mp4", "Texture, as MP4", "mp4", "video/mp4"),
+    _File("texture-mp4", "Texture as MP4", "mp4", "video/mp4"),
     _File("preview", "Preview", "webp", "image/webp"),
 )
-CROP = (_File("crop", "Crop", "webm", "video/webm"), _File("crop-mp4", "Crop, as MP4", "mp4", "video/mp4"))
+BASE_BYTES, PIXEL_BYTES = 40_000_000, {1: 190, 3: 280}  # of a frame, by its channels; measured at 512² to 2048²
+CROP = (_File("crop", "Crop", "webm", "video/webm"), _File("crop-mp4", "Crop as MP4", "mp4", "video/mp4"))
+
+
+def film_memory(width: int, height: int, channels: int) -> int:
+    """Bytes that `texture_film` needs at its peak, whatever the number of frames."""
+    return BASE_BYTES + PIXEL_BYTES[channels] * width * height
 
 
 def texture_film(
     frames: Iterable[NDArray[Any]], *, width: int, height: int, channels: int, count: int, rate: float, context: Context
 ) -> Iterator[Picture]:
-    """Write a video texture: WebM, MP4, animated preview and video cube, in one pass over its frames.
+    """Write a video texture as WebM, MP4, animated preview and video cube, in one pass over its frames.
 
     Parameters
     ----------
     frames : iterable of ndarray, shape (H, W, C)
-        float32 or uint8, 0 to 255; values outside are cut off. Nothing of a frame is kept when the next is asked for.
-        Where making them takes time, ``frames`` itself calls progress.
+        float32 or uint8, 0 to 255; they are rounded, and what is outside cut off. Nothing of a frame is kept when the
+        next is asked for. It calls progress itself.
     width, height, channels, count : int
-        What ``frames`` gives.
+        Of ``frames``.
     rate : float
         Frames a second.
     context : Context
-        Its progress is called after the last frame, while the encoders finish: stage ``encoding``, 0 to 1. So give
-        ``dataclasses.replace(context, progress=context.between(…))``.
+        After the last frame, while the encoders finish, its progress is called with the stage ``encoding``, from 0 to
+        1: give ``dataclasses.replace(context, progress=context.between(…))``.
 
     Yields
     ------
     Picture
-        ``texture``, ``texture-mp4``, ``preview``, ``cube``. Stopped before, it leaves no file and no thread behind.
+        ``texture``, ``texture-mp4``, ``preview``, ``cube``. Left or stopped before, no file and no thread stays.
     """
-    cube = VideoCube(width, height, channels, count)
-    yield from _written(_rounded(frames, cube), TEXTURE, (width, height, channels, count), rate, context)
-    yield _cube_picture("cube", "Video cube", cube)
+    size = width, height, channels, count
+    cube = VideoCube(*size)
+    yield from _written(_rounded(frames, cube), TEXTURE, size, rate, context, "encoding")
+    yield _picture_of(cube, "cube", "Video cube")
 
 
 def crop_film(source: Source, context: Context) -> Iterator[Picture]:
-    """Write a moving input: ``crop`` (WebM), ``crop-mp4`` and ``crop-cube``; stage ``crop``, 0 to 1."""
+    """Write a moving input: ``crop`` (WebM), ``crop-mp4`` and ``crop-cube``; the stage is ``crop``, from 0 to 1."""
     assert source.film is not None
     frames, rate = source.film.frames, source.film.rate
     count, height, width, channels = frames.shape
-    cube = VideoCube(width, height, channels, count)
+    size = width, height, channels, count
+    cube = VideoCube(*size)
 
     def reported() -> Iterator[Frame]:
         for index, frame in enumerate(frames):
             context.progress("crop", index / count)
             yield frame
 
-    yield from _written(_rounded(reported(), cube), CROP, (width, height, channels, count), rate, context, "crop")
-    yield _cube_picture("crop-cube", "Video cube of the crop", cube)
+    yield from _written(_rounded(reported(), cube), CROP, size, rate, context, "crop")
+    yield _picture_of(cube, "crop-cube", "Video cube of the crop")
+
+
+def _rounded(frames: Iterable[NDArray[Any]], cube: VideoCube) -> Iterator[Frame]:
+    for frame in frames:
+        levels = frame if frame.dtype == np.uint8 else np.clip(np.rint(frame), 0, 255)
+        rounded = levels.astype(np.uint8)  # a copy: its maker may use the frame's memory again
+        cube.add(rounded)
+        yield rounded
 
 
 def _written(
@@ -81,32 +95,31 @@ def _written(
     size: tuple[int, int, int, int],
     rate: float,
     context: Context,
-    stage: str = "encoding",
+    stage: str,
 ) -> Iterator[Picture]:
     width, height, channels, count = size
     writers: list[FilmWriter] = []
     try:
         for file in files:
             path = context.scratch / uuid4().hex
-            writers.append(
-                FilmWriter(path, file.kind, width=width, height=height, channels=channels, count=count, rate=rate)
-            )
+            writer = FilmWriter(path, file.kind, width=width, height=height, channels=channels, count=count, rate=rate)
+            writers.append(writer)
         with Encoding(writers) as encoding:
             for frame in frames:
                 encoding.write(frame)
             encoding.finish(lambda part: context.progress(stage, part))
         for file in files:
-            written = writers.pop(0)  # who takes the picture owns its file
+            writer = writers.pop(0)  # whoever takes the picture owns the file
             yield Picture(
                 file.name,
                 file.title,
-                written.width,
-                written.height,
-                written.path,
+                writer.width,
+                writer.height,
+                writer.path,
                 kind="texture" if file.name == "texture" else "view",
                 media_type=file.media_type,
-                frames=count,
-                rate=rate,
+                frames=writer.frames,
+                rate=writer.rate,
             )
     finally:
         for writer in writers:
@@ -114,14 +127,7 @@ def _written(
             writer.path.unlink(missing_ok=True)
 
 
-def _rounded(frames: Iterable[NDArray[Any]], cube: VideoCube) -> Iterator[Frame]:
-    for frame in frames:
-        values = frame if frame.dtype == np.uint8 else np.clip(np.rint(frame), 0, 255)
-        rounded = values.astype(np.uint8)
-        cube.add(rounded)
-        yield rounded
-
-
-def _cube_picture(name: str, title: str, cube: VideoCube) -> Picture:
+def _picture_of(cube: VideoCube, name: str, title: str) -> Picture:
     picture = cube.picture()
-    return Picture(name, title, picture.shape[1], picture.shape[0], encode_png(picture))
+    height, width, _ = picture.shape
+    return Picture(name, title, width, height, encode_png(picture))

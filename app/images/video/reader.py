@@ -6,12 +6,11 @@ from pathlib import Path
 import av
 import numpy as np
 from av.video.reformatter import ColorRange
-from numpy.typing import NDArray
 
-from app.images.video.writers import rows
+from app.images.video.writers import Frame, rows
 
 
-def read_film(path: Path) -> Iterator[NDArray[np.uint8]]:
+def read_film(path: Path) -> Iterator[Frame]:
     """Frames (H, W, C) uint8, one by one; C is 1 for a WebM film written from one channel, otherwise 3."""
     with av.open(path) as container:
         for frame in container.decode(video=0):
@@ -21,6 +20,6 @@ def read_film(path: Path) -> Iterator[NDArray[np.uint8]]:
                 yield frame.to_ndarray(format="rgb24").astype(np.uint8, copy=False)
 
 
-def first_frame(path: Path) -> NDArray[np.uint8]:
+def first_frame(path: Path) -> Frame:
     """The first frame, (H, W, C) uint8, decoded alone."""
     return next(read_film(path))
