@@ -145,5 +145,5 @@ def test_what_it_would_take_is_known_before_it_is_run(service: Service, sample: 
     assert (plan.width, plan.height, plan.frames) == (50, 36, 8)
     assert 0 < plan.memory < plan.memory_limit
     with pytest.raises(TooLargeError):
-        service.check(request(sample, width=4096, height=16))
+        service.check(request(sample, width=4096, height=17))
     assert service.counts()["queued"] == 0

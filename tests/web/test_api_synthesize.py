@@ -3,8 +3,11 @@
 import socket
 from io import BytesIO
 
+import numpy as np
 import pytest
 from PIL import Image
+
+from app.images.video.writers import write_film
 
 URL = "/api/v1/synthesize"
 
@@ -161,3 +164,60 @@ def test_hanging_up_cancels_the_run(site, picture, until):
             connection.sendall(f"{head}Content-Length: {len(body)}\r\n\r\n".encode() + body)
             until(running)
         until(lambda: running() == 0)
+
+
+@pytest.fixture(scope="module", name="clip")
+def a_clip(tmp_path_factory):
+    path = tmp_path_factory.mktemp("clips") / "clip.webm"
+    film = np.random.default_rng(5).integers(0, 256, (10, 40, 48, 3), dtype=np.uint8)
+    write_film(film, path, "webm", count=len(film), rate=10.0)
+    return path.read_bytes()
+
+
+def moving(site, clip, accept=None, **fields):
+    headers = {"Accept": accept} if accept else None
+    data = {"method": "video-rpn", "crop": "4,4,32,24", "time": "2,6", **fields}
+    return site.client.post(URL, files={"file": ("clip.webm", clip)}, data=data, headers=headers)
+
+
+@pytest.mark.parametrize(
+    ("accept", "fields", "media_type", "output"),
+    [
+        (None, {}, "video/webm", "texture"),
+        ("video/mp4", {}, "video/mp4", "texture-mp4"),
+        ("image/webp,*/*", {"format": "mp4"}, "video/mp4", "texture-mp4"),
+    ],
+)
+def test_a_clip_comes_back_as_the_video_that_an_experiment_makes(site, clip, accept, fields, media_type, output):
+    sample = site.upload(clip)["id"]
+    crop, frames = {"x": 4, "y": 4, "width": 32, "height": 24}, {"first": 2, "count": 6}
+    record = site.finished(method="video-rpn", inputs=[{"sample": sample, "crop": crop, "frames": frames}])
+    kept = next(entry for entry in record["outputs"] if entry["name"] == output)
+    assert (kept["media_type"], kept["frames"], kept["rate"]) == (media_type, 6, 10.0)
+    response = moving(site, clip, accept, **fields)
+    assert (response.status_code, response.headers["Content-Type"]) == (200, media_type)
+    assert response.content == site.client.get(kept["url"]).content
+
+
+@pytest.mark.parametrize(
+    ("fields", "field", "words"),
+    [
+        ({"time": "2"}, "time", "first,count"),
+        ({"time": "5,6"}, "time", "reaches outside"),
+        ({"format": "png"}, "format", "webm or mp4"),
+        ({"method": "rpn"}, "time", "1 frame"),
+        ({"frames": "1"}, "frames", "greater than or equal to 2"),
+    ],
+)
+def test_what_is_wrong_with_a_moving_run_is_said_at_its_field(site, clip, fields, field, words):
+    response = moving(site, clip, **fields)
+    assert response.status_code == 422
+    (fault,) = response.json()["errors"]
+    assert fault["field"] == field
+    assert words in fault["message"]
+
+
+def test_a_still_picture_is_no_clip(site, picture):
+    response = moving(site, picture(), time="")
+    assert (response.status_code, response.json()["errors"][0]["field"]) == (422, "file")
+    assert "upload an MP4" in response.json()["detail"]
