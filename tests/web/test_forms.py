@@ -7,9 +7,9 @@ import pytest
 from pydantic import Field
 
 from app.methods.fields import fields, requirement
-from app.methods.model import Method, StillParams
+from app.methods.model import LoopParams, Method, StillParams
 from app.methods.registry import METHODS
-from app.web.forms import SHARED, form_name, own_fields, parse
+from app.web.forms import SHARED, form_name, own_fields, parse, shared
 
 
 class Params(StillParams):
@@ -47,6 +47,15 @@ def test_shared_parameters_are_asked_once(method: Method) -> None:
     assert [field.name for field in own_fields(method)] == ["scale", "levels", "kind", "exact", "shares"]
     assert form_name(method, "seed") == "seed"
     assert form_name(method, "scale") == "test.scale"
+
+
+def test_what_moving_methods_share_is_asked_once_for_them(method: Method) -> None:
+    """Each of it where a method has it; a still method's own parameter of the same name stays its own."""
+    looping = replace(method, params=type("Looping", (Params, LoopParams), {}))
+    assert shared(looping) == ("width", "height", "seed", "frames", "loop")
+    assert [field.name for field in own_fields(looping)] == ["scale", "levels", "kind", "exact", "shares"]
+    assert form_name(looping, "loop") == "loop"
+    assert form_name(looping, "tileable") == "test.tileable"
 
 
 def test_submitted_texts_become_parameters(method: Method) -> None:
