@@ -4,13 +4,12 @@ from collections.abc import Iterator, Sequence
 from math import isqrt, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 
 from app.errors import InvalidInputError
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
 from app.methods.model import Context, Fact, Method, Picture, Progress, Size, Source, StillParams
-from app.methods.pictures import crops, encode, refuse_infinite
+from app.methods.pictures import coordinate_colours, crops, encode, refuse_infinite
 from app.methods.random_phase import INPUTS
 from app.methods.references import EFROS_LEUNG as EFROS_LEUNG_ARTICLE
 from app.methods.references import IPOL_EFROS_LEUNG
@@ -114,7 +113,7 @@ def run(sources: Sequence[Source], params: EfrosLeungParams, context: Context) -
     yield encode("texture", "Texture", grown.texture, peak, context, kind="texture", facts=(share,))
     context.progress("views", 0.97)
     yield from crops(sources, context)
-    colours = _coordinate_colours(*h.shape[:2])
+    colours = coordinate_colours(*h.shape[:2])
     copied = colours[grown.copied[:, :, 0], grown.copied[:, :, 1]]
     yield encode("copy-map", "Copy map: where in the crop each pixel was taken", copied, 1, context)
     yield encode("copy-map-key", "Key of the copy map: the colours of the crop's places", colours, 1, context)
@@ -127,12 +126,6 @@ def _overall(context: Context) -> Progress:
     """The stages of `efros_leung` one after the other."""
     stages = {"order": (0.0, 0.02), "patches": (0.02, 0.05), "growth": (0.05, 0.97)}
     return lambda stage, part: context.between(*stages[stage])(stage, part)
-
-
-def _coordinate_colours(height: int, width: int) -> NDArray[np.float32]:
-    """A colour for every place: red grows to the right, green downwards, blue to the upper left."""
-    y, x = np.linspace(0, 1, height)[:, None], np.linspace(0, 1, width)[None, :]
-    return np.stack(np.broadcast_arrays(x, y, 1 - (x + y) / 2), axis=2).astype(np.float32)
 
 
 EXPLANATION = Explanation(

@@ -80,3 +80,12 @@ def refuse_infinite(sources: Sequence[Source]) -> None:
             raise InvalidInputError(
                 "The crop holds values that are not finite numbers: save it anew.", f"inputs.{index}"
             )
+
+
+def coordinate_colours(height: int, width: int) -> Real:
+    """A colour for every place, shape (height, width, 3): red grows to the right, green down, blue to the upper left.
+
+    Values are 0 to 1.
+    """
+    y, x = np.linspace(0, 1, height)[:, None], np.linspace(0, 1, width)[None, :]
+    return np.stack(np.broadcast_arrays(x, y, 1 - (x + y) / 2), axis=2).astype(np.float32)
