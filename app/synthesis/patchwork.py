@@ -10,12 +10,13 @@ References
 P. Harrison, "Patchwork Texture Synthesis", Monash University technical report, 2002: equation (2) and figure 1.
 """
 
+from collections.abc import Callable
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from app.synthesis.cells import Cells, Window, jittered_cells
+from app.synthesis.cells import Cells, Part, Window, jittered_cells
 from app.synthesis.field import Progress, into, row_blocks
 from app.synthesis.patches import Patches
 from app.synthesis.team import Team
@@ -60,32 +61,52 @@ class Patchwork:
 
     def rows(self, top: int, bottom: int) -> Real:
         """Rows ``top`` to ``bottom`` − 1 of the texture, shape (C, bottom − top, width), any time and in any order."""
-        width = self.cells.width
-        out = np.zeros((len(self._mean), bottom - top, width), np.float32)
-        among = self.cells.reaching(Window(top, bottom, 0, width))
-        for left in range(0, width, TILE):
-            window = Window(top, bottom, left, min(left + TILE, width))
-            self._join(out[:, :, left : window.right], window, among)
+        out = np.zeros((len(self._mean), bottom - top, self.cells.width), np.float32)
+        _join(out, top, self.cells, self._patches.of, self._blend)
         out += self._mean[:, None, None]
         return out
 
-    def _join(self, out: Real, window: Window, among: NDArray[np.int64]) -> None:
-        norm = np.zeros(out.shape[1:], np.float32)
+
+def painted(cells: Cells, colours: Real, top: int, bottom: int, *, soft: bool = True) -> Real:
+    """Rows of a picture of the cells, as in the report's figure 2.
+
+    Parameters
+    ----------
+    cells : Cells
+    colours : ndarray of float32, shape (cells.count, C)
+    top, bottom : int
+    soft : bool
+        Mix the colours by the weights, so that the picture shows f.
+
+    Returns
+    -------
+    ndarray of float32, shape (C, bottom − top, cells.width)
+    """
+    out = np.zeros((colours.shape[1], bottom - top, cells.width), np.float32)
+    _join(out, top, cells, lambda part: colours[cells.cell[part.centre], :, None, None], "feather" if soft else "sharp")
+    return out
+
+
+def _join(out: Real, top: int, cells: Cells, show: Callable[[Part], Real], blend: Blend) -> None:
+    """Put together what every part shows, into rows that begin at ``top`` and hold zeros."""
+    bottom = top + out.shape[1]
+    among = cells.reaching(Window(top, bottom, 0, cells.width))
+    for left in range(0, cells.width, TILE):
+        window = Window(top, bottom, left, min(left + TILE, cells.width))
+        tile = out[:, :, left : window.right]
+        norm = np.zeros(tile.shape[1:], np.float32)
         room = np.empty(norm.size, np.float32)
-        for part in self.cells.parts(window, among):
-            patch = self._patches.of(part)
-            there = (part.rows, part.columns)
-            if self._blend == "sharp":
-                np.copyto(out[:, *there], patch, where=part.weight == 1)
+        for part in cells.parts(window, among):
+            there, shown = (part.rows, part.columns), show(part)
+            if blend == "sharp":
+                np.copyto(tile[:, *there], shown, where=part.weight == 1)
                 continue
             term = room[: part.weight.size].reshape(part.weight.shape)
-            norm[there] += part.weight if self._blend == "feather" else np.square(part.weight, out=term)
-            for plane, source in zip(out, patch, strict=True):
-                plane[there] += np.multiply(source, part.weight, out=term)
-        if self._blend == "deviation":
-            out /= np.sqrt(norm, out=norm)
-        elif self._blend == "feather":
-            out /= norm
+            norm[there] += part.weight if blend == "feather" else np.square(part.weight, out=term)
+            for plane, values in zip(tile, shown, strict=True):
+                plane[there] += np.multiply(values, part.weight, out=term)
+        if blend != "sharp":
+            tile /= norm if blend == "feather" else np.sqrt(norm, out=norm)
 
 
 def patchwork(
