@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
-from app.methods.films import crop_film, texture_film
+from app.methods.films import crop_film, film_memory, texture_film
 from app.methods.model import Context, Fact, Method, MovingParams, Picture, Progress, Size, Slot, Source
 from app.methods.options import SpotParams
 from app.methods.pictures import Real, encode, log_modulus
@@ -19,7 +19,7 @@ SMOKE = (("advected_noise", "0,0,320,320"),)
 CLOUDS = (("sky_pan", "0,0,320,320"),)
 WATER = (("sand_under_water", "0,0,320,320"),)
 CUBES = ("crop-cube", "cube")
-WORKING = 1 << 24  # bytes that are held for a moment, beside whole films and frames
+FRAMES, ROWS = 16, 24  # of floats: averages, powers and the like; rows of all frames, which the threads have in hand
 
 
 class VideoRpnParams(SpotParams, MovingParams):
@@ -31,15 +31,16 @@ def check(sizes: Sequence[Size], params: VideoRpnParams) -> None:
 
 
 def memory(sizes: Sequence[Size], params: VideoRpnParams) -> int:
-    """The clip, its half spectrum, that of the texture where it is larger, and some frames."""
+    """The clip, its half spectrum, that of the texture where the two differ, some frames, and the encoders."""
     clip = sizes[0]
-    frames, height, width = _shape(clip, params)
+    frames, height, width = shape = _shape(clip, params)
     inside = min(frames, clip.frames), min(height, clip.height), min(width, clip.width)
     needed = clip.channels * clip.frames * clip.height * clip.width + _spectrum_bytes(inside, clip.channels)
-    if inside != (frames, height, width):
-        needed += _spectrum_bytes((frames, height, width), clip.channels)
-    frame = clip.channels * max(height * width, clip.height * clip.width)
-    return needed + 64 * frame + WORKING
+    if inside != shape:
+        needed += _spectrum_bytes(shape, clip.channels)
+    wide, high = max(width, clip.width), max(height, clip.height)
+    floats = clip.channels * wide * (FRAMES * high + ROWS * max(frames, clip.frames))
+    return needed + 4 * floats + film_memory(wide, high, clip.channels)
 
 
 def _spectrum_bytes(shape: tuple[int, int, int], channels: int) -> int:

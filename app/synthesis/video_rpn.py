@@ -83,8 +83,7 @@ class MovingField:
     power : ndarray of float32, shape (height, width // 2 + 1)
         Squared modulus of the texture, the sum over channels and frequencies in time.
     power_in_time : ndarray of float32, shape (frames, width // 2 + 1)
-        The same over the few rows next to k₁ = 0, for every frequency in time: what moves steadily along x is a
-        straight line, and waves lie on the curve of their dispersion.
+        The same over the few rows next to k₁ = 0 alone, by frequency in time: a steady motion is a slanted line.
     still : float
         Part of the texture's variance that does not change with time, 0–1.
     """
@@ -153,8 +152,8 @@ class MovingField:
     ) -> None:
         """Go to frequencies in time and back, in place, row by row of the frames' spectra.
 
-        ``jump`` (C, H, columns) is that from the last frame to the first, which is taken out; ``still`` the spectrum of
-        what is to be added to every frame; with ``randomise`` the phase becomes random, and the mean 0.
+        ``jump`` (C, H, columns) is taken out; ``still``, of the same shape, is added to every frame; with ``randomise``
+        the phase becomes random, and the mean 0.
         """
         _, frames, height, _ = spectrum.shape
         flat = random_spectrum(height, width, self._seed) if randomise else None
@@ -292,13 +291,6 @@ def video_rpn(
         raise ValueError("The film holds values that are not finite.")
     shape = (frames or film.shape[0], height or film.shape[1], width or film.shape[2])
     with Team(threads) as team:
-        field = MovingField(
-            film,
-            shape,
-            seed=seed,
-            alpha=alpha,
-            profile=window,
-            team=team,
-            progress=progress or (lambda stage, part: None),
-        )
+        said = progress or (lambda stage, part: None)
+        field = MovingField(film, shape, seed=seed, alpha=alpha, profile=window, team=team, progress=said)
         return np.stack(list(field.frames()))
