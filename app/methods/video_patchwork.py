@@ -12,10 +12,10 @@ from app.methods.explanation import Exhibit, Explanation, Figure, Formula
 from app.methods.films import crop_film
 from app.methods.model import Context, Method, Picture, SeamlessParams, Size, Slot, Source
 from app.methods.options import ADVANCED
+from app.methods.patches import LEAST_GRID, refuse_small
 from app.methods.references import PATCHWORK
 from app.methods.video_patches import (
     HELD,
-    LEAST_GRID,
     Painter,
     Real,
     average_picture,
@@ -23,7 +23,6 @@ from app.methods.video_patches import (
     film_bytes,
     patchwork_bytes,
     refuse_short,
-    refuse_small,
     textured,
 )
 from app.synthesis.cells import jittered_cells, least_sample, random
@@ -32,7 +31,7 @@ from app.synthesis.video_cells import FixedCells, source_colours
 from app.synthesis.video_mosaic import Mosaic, needed
 from app.synthesis.video_patchwork import Clip, VideoPatchwork
 
-IN_TIME = 2  # stream of random numbers; those before lay out the cells and draw their sources
+IN_TIME = 3  # stream of random numbers; those before lay out the cells and draw or match their sources
 
 
 class VideoPatchworkParams(SeamlessParams):
@@ -124,7 +123,7 @@ def _fixed(
     )
     clip = Clip(film, cells.margin(sources, film.shape[1], film.shape[2]))
     mean = film.mean((0, 1, 2), np.float64).astype(np.float32)
-    made = VideoPatchwork(clip, cells, sources, np.tile(mean, (cells.count, 1)), transitions)
+    made = VideoPatchwork(clip, cells, sources, transitions, np.tile(mean, (cells.count, 1)))
     return made.frame, lambda window: FixedCells(cells, window, sources, transitions, film.shape[:3]).painted
 
 

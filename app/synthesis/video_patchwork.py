@@ -21,14 +21,15 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from app.synthesis.cells import LEFT_OUT, Cells, Part
+from app.synthesis.cells import Cells, Window
 from app.synthesis.team import Team
 from app.synthesis.transitions import Transitions
 
 Real = NDArray[np.float32]
 Ints = NDArray[np.int64]
 
-STRIP = 32  # rows; the slighter the strips, the less of them is outside a round cell, and the more calls they take
+STRIP = 32  # rows; the slighter the strips, the less of them is outside of round cells, and the more calls they take
+TINY = 1e-30  # instead of 0, for a cell that has a part of no pixel
 
 
 class Clip:
@@ -80,31 +81,60 @@ class VideoPatchwork:
     cells : Cells
     sources : ndarray of int, shape (count of cells, 2)
         q_i in the clip without its margin.
-    means : ndarray of float32, shape (count of cells, C)
-        a_i.
     transitions : Transitions
         A sequence for each cell.
+    means : ndarray of float32, shape (count of cells, C), optional
+        a_i; without them the local ones of a transfer, each patch's mean in the average image.
     """
 
-    def __init__(self, clip: Clip, cells: Cells, sources: Ints, means: Real, transitions: Transitions) -> None:
+    def __init__(
+        self, clip: Clip, cells: Cells, sources: Ints, transitions: Transitions, means: Real | None = None
+    ) -> None:
         self._clip, self._transitions = clip, transitions
-        shape = (cells.height, cells.width)
-        parts = cells.parts(cells.plane)
-        totals, squares = np.zeros(shape, np.float32), np.zeros(shape, np.float32)
+        self._patches: list[_Patch] = []
+        ratios = np.empty((cells.height, cells.width), np.float32)
+        for top in range(0, cells.height, STRIP):
+            window = Window(top, min(top + STRIP, cells.height), 0, cells.width)
+            self._lay(cells, window, sources + clip.margin, ratios[top : window.bottom])
+        if means is None:
+            means = self._local_means(cells.count, ratios)
+        self._still: Real = np.zeros((len(clip.average), cells.height, cells.width), np.float32)
+        for patch in self._patches:
+            self._still[:, *patch.place] += means[patch.cell][:, None, None] * (
+                (ratios[patch.place] - 1) * patch.weight
+            )
+
+    def _lay(self, cells: Cells, window: Window, sources: Ints, ratios: Real) -> None:
+        """The patches of a window; ``ratios`` gets √(Σ w_i²) / Σ w_i, with which ŵ_i is the part of a pixel."""
+        parts = cells.parts(window)
+        totals, squares = np.zeros((2, *ratios.shape), np.float32)
         for part in parts:
             totals[part.rows, part.columns] += part.weight
             squares[part.rows, part.columns] += part.weight**2
-        norm = 1 / np.sqrt(squares)
-        self._still: Real = np.zeros((len(clip.average), *shape), np.float32)
-        self._patches = []
+        norms = np.sqrt(squares)
+        np.divide(norms, totals, out=ratios)
         for part in parts:
-            place = part.rows, part.columns
-            mean = means[cells.cell[part.centre]][:, None, None]
-            self._still[:, *place] += mean * (part.weight / totals[place])
-            part.weight[:] *= norm[place]
-        self._patches = [patch for part in parts for patch in _strips(part, cells, sources + clip.margin)]
+            cell = int(cells.cell[part.centre])
+            y, x = (sources[cell] + part.source).tolist()
+            rows, columns = part.rows, part.columns
+            self._patches.append(
+                _Patch(
+                    cell,
+                    (slice(window.top + rows.start, window.top + rows.stop), columns),
+                    (slice(rows.start + y, rows.stop + y), slice(columns.start + x, columns.stop + x)),
+                    part.weight / norms[rows, columns],
+                )
+            )
+
+    def _local_means(self, count: int, ratios: Real) -> Real:
+        """Every patch's mean in the average image, each pixel counted by the part that the patch has of it."""
+        sums = np.zeros((count, len(self._clip.average) + 1))
         for patch in self._patches:
-            self._still[:, *patch.place] -= means[patch.cell][:, None, None] * patch.weight
+            shares = patch.weight * ratios[patch.place]
+            sums[patch.cell, :-1] += (self._clip.average[:, *patch.source] * shares).sum((1, 2), np.float64)
+            sums[patch.cell, -1] += shares.sum(dtype=np.float64)
+        means: Real = (sums[:, :-1] / np.maximum(sums[:, -1:], TINY)).astype(np.float32)
+        return means
 
     def frame(self, number: int) -> Real:
         """Frame ``number`` of the output, (H, W, C), values about those of the clip and sometimes beyond."""
@@ -120,22 +150,6 @@ class VideoPatchwork:
             values *= patch.weight
             made[:, *patch.place] += values
         return made.transpose(1, 2, 0)
-
-
-def _strips(part: Part, cells: Cells, sources: Ints) -> Iterator[_Patch]:
-    """A cell's part in strips, without the columns in which all its weights are too small to be seen."""
-    cell = int(cells.cell[part.centre])
-    y, x = (sources[cell] + part.source).tolist()
-    for top in range(0, len(part.weight), STRIP):
-        strip = part.weight[top : top + STRIP]
-        seen = np.flatnonzero((strip >= LEFT_OUT).any(0))
-        if not len(seen):
-            continue
-        first, last = int(seen[0]), int(seen[-1]) + 1
-        rows = slice(part.rows.start + top, part.rows.start + top + len(strip))
-        columns = slice(part.columns.start + first, part.columns.start + last)
-        source = slice(rows.start + y, rows.stop + y), slice(columns.start + x, columns.stop + x)
-        yield _Patch(cell, (rows, columns), source, strip[:, first:last].copy())
 
 
 def in_order(frame: Callable[[int], Real], count: int, threads: int, done: Callable[[float], None]) -> Iterator[Real]:
