@@ -8,6 +8,7 @@ from app.methods.heeger_bergen import HEEGER_BERGEN
 from app.methods.mix import MIX
 from app.methods.model import Method
 from app.methods.modulus_phase import MODULUS_PHASE
+from app.methods.patchwork import PATCHWORK
 from app.methods.rayleigh import RAYLEIGH
 from app.methods.rpn import RPN
 from app.methods.texton import TEXTON
@@ -24,6 +25,7 @@ METHODS: dict[str, Method] = {
     "rayleigh": RAYLEIGH,
     "heeger-bergen": HEEGER_BERGEN,
     "efros-leung": EFROS_LEUNG,
+    "patchwork": PATCHWORK,
     "video-rpn": VIDEO_RPN,
     "video-patchwork": VIDEO_PATCHWORK,
 }
