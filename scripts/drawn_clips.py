@@ -134,7 +134,7 @@ def _smoke(rng: np.random.Generator) -> Real:
     return np.stack([plane / plane.std() for plane in planes], axis=2)
 
 
-CLIPS = {"sky_pan": sky_pan, "sand_under_water": sand_under_water, "advected_noise": advected_noise}
+CLIPS = {"sand_under_water": sand_under_water, "sky_pan": sky_pan, "advected_noise": advected_noise}
 
 
 def _waves(down: Real, across: Real, amplitude: NDArray[np.complex128], at: Real) -> Real:

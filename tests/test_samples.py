@@ -1,8 +1,10 @@
 """The catalogue of the bundled photographs and clips is complete, honest and points at real regions."""
 
 import json
+import runpy
 import subprocess
 import sys
+from itertools import islice
 from pathlib import Path
 
 import av
@@ -91,3 +93,17 @@ def test_drawn_samples_come_last_and_can_be_drawn_again(photographs: list[Bundle
             np.asarray(Image.open(directory / photograph.path.name), np.int16) for directory in (SAMPLES, tmp_path)
         )
         assert np.abs(bundled_pixels - again).max() <= 1
+
+
+def test_the_clips_can_be_made_again(photographs: list[BundledSample]) -> None:
+    """H.264 keeps them at 36 dB or better; a frame out of its place has 32 dB at most."""
+    script = runpy.run_path(str(ROOT / "scripts" / "drawn_clips.py"))
+    clips = [photograph for photograph in photographs if photograph.kind == "moving"]
+    assert [clip.id for clip in clips] == list(script["CLIPS"])
+    for clip in clips:
+        kept = film(clip.path)
+        assert kept.shape == (72, 320, 320, 3)
+        assert "computed" in clip.title
+        for index, frame in enumerate(islice(script["CLIPS"][clip.id](), 2)):
+            error = np.mean((np.clip(frame, 0, 255) - kept[index]) ** 2)
+            assert 10 * np.log10(255**2 / error) > 35
