@@ -4,6 +4,7 @@ import io
 import zlib
 from concurrent.futures import ThreadPoolExecutor
 from itertools import pairwise
+from pathlib import Path
 
 import imagecodecs
 import numpy as np
@@ -131,6 +132,18 @@ def test_missing_and_doubled_rows_are_refused() -> None:
 def test_blocks_that_do_not_fit_are_refused(y: int, block: Picture) -> None:
     with pytest.raises(ValueError, match="picture"):
         PngWriter(4, 10, 3, 8).write(y, block)
+
+
+def test_a_file_whose_height_nobody_knew_is_as_high_as_what_was_written(tmp_path: Path) -> None:
+    picture = np.random.default_rng(0).integers(0, 256, (30, 7, 3), np.uint8)
+    known, unknown = PngWriter(7, 30, 3, 8), PngWriter(7, None, 3, 8)
+    with pytest.raises(ValueError, match="row 0 was written never"):
+        unknown.finish()
+    for y in range(0, 30, 10):
+        known.write(y, picture[y : y + 10])
+        unknown.write(y, picture[y : y + 10])
+    unknown.save(tmp_path / "picture.png")
+    assert (tmp_path / "picture.png").read_bytes() == unknown.finish() == known.finish()
 
 
 def test_arrays_and_sizes_that_no_png_has_are_refused() -> None:
