@@ -1,0 +1,313 @@
+"""A clip on its page: uploaded, played, cropped in space and time by pointer, keyboard and plain form, and run."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import av
+import numpy as np
+import pytest
+from playwright.sync_api import Page, expect
+
+from app.methods.registry import METHODS
+
+SIDES = ("x", "y", "width", "height")
+MOVING = next(name for name, method in METHODS.items() if method.inputs[0].moving)
+WIDTH, HEIGHT, FRAMES, RATE = 161, 120, 24, 12
+
+
+@pytest.fixture(scope="module")
+def clip(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What a visitor uploads: waves that move, 161 × 120 pixels, two seconds, as MP4 of every colour's own place."""
+    path = tmp_path_factory.mktemp("clip") / "waves.mp4"
+    t, y, x = np.mgrid[0:FRAMES, 0:HEIGHT, 0:WIDTH]
+    waves = [128 + 80 * np.sin(x / (7 + i) + y / (11 - i) + 2 * np.pi * t * (i + 1) / FRAMES) for i in range(3)]
+    with av.open(path, "w") as file:
+        track = file.add_stream("libx264", rate=RATE)
+        track.width, track.height, track.pix_fmt = WIDTH, HEIGHT, "yuv444p"
+        for frame in np.stack(waves, axis=-1).astype(np.uint8):
+            file.mux(track.encode(av.VideoFrame.from_ndarray(frame, "rgb24")))
+        file.mux(track.encode(None))
+    return path
+
+
+@pytest.fixture(scope="module")
+def uploaded(site: Any, clip: Path) -> str:
+    """The address of that clip's page."""
+    answer = site.client.post("/api/v1/samples", files={"file": clip.open("rb")})
+    assert answer.status_code == 201, answer.text
+    return f"/samples/{answer.json()['id']}"
+
+
+def crop_of(page: Page) -> list[int]:
+    return [int(page.input_value(f"#crop-{side}")) for side in SIDES]
+
+
+def time_of(page: Page) -> list[int]:
+    return [int(page.input_value(f"#time-{part}")) for part in ("first", "count")]
+
+
+def record_of(site: Any, page: Page) -> dict[str, Any]:
+    page.wait_for_url("**/experiments/*")
+    return dict(site.client.get("/api/v1/experiments/" + page.url.rsplit("/", 1)[-1]).json())
+
+
+def shows(page: Page, frame: int) -> None:
+    """Wait until the video has stopped at a frame."""
+    page.wait_for_function(
+        """([frame, rate]) => {
+            const video = document.querySelector("#frame video");
+            const at = Math.floor(video.currentTime * rate);
+            return video.paused && !video.seeking && video.readyState >= 2 && at === frame;
+        }""",
+        arg=[frame, RATE],
+    )
+
+
+def drag(page: Page, start: float, end: float) -> None:
+    """Drag on the reel, from and to places between frames."""
+    bounds = page.locator("#crop .track").bounding_box()
+    assert bounds is not None
+    across, y = bounds["width"] / FRAMES, bounds["y"] + bounds["height"] / 2
+    page.mouse.move(bounds["x"] + start * across, y)
+    page.mouse.down()
+    page.mouse.move(bounds["x"] + end * across, y, steps=4)
+    page.mouse.up()
+
+
+def tab_to(page: Page, selector: str, key: str = "Tab") -> None:
+    for _ in range(80):
+        page.keyboard.press(key)
+        if page.evaluate("selector => document.activeElement.matches(selector)", selector):
+            return
+    raise AssertionError(f"{key} does not lead to {selector}")
+
+
+def test_upload_crop_in_space_and_time_and_run(
+    visitors: Any, site: Any, clip: Path, screenshot: Callable[..., None]
+) -> None:
+    """The whole way with the pointer: the experiment is of the frames and the rectangle that were drawn."""
+    page = visitors.visit()
+    with page.expect_file_chooser() as chooser:
+        page.get_by_role("button", name="Choose a photograph or clip").click()
+    chooser.value.set_files(clip)
+    page.wait_for_url("**/samples/*")
+    expect(page.locator(f"#method-{MOVING}")).to_be_checked()
+    assert (crop_of(page), time_of(page)) == ([0, 0, WIDTH, HEIGHT], [0, FRAMES])
+    page.wait_for_function("!document.querySelector('#frame video').paused")
+    drag(page, 0, 6)
+    drag(page, FRAMES, 18)
+    assert time_of(page) == [6, 12]
+    drag(page, 10, 8)
+    assert time_of(page) == [4, 12]
+    box = page.locator("#frame.ready").bounding_box()
+    assert box is not None
+    scale = box["width"] / WIDTH
+    page.mouse.move(box["x"] + 20 * scale, box["y"] + 30 * scale)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 100 * scale, box["y"] + 94 * scale, steps=4)
+    page.mouse.up()
+    crop = crop_of(page)
+    assert crop == pytest.approx([20, 30, 80, 64], abs=1.5)
+    expect(page.locator("#run-size")).to_contain_text(f"{crop[2]} × {crop[3]} pixels, 12 frames")
+    screenshot(page, "sample-clip")
+    page.get_by_role("button", name="Synthesise").click()
+    expect(page.get_by_role("heading", name="Time by stage")).to_be_visible()
+    record = record_of(site, page)
+    assert record["status"] == "succeeded"
+    assert record["inputs"][0]["crop"] == dict(zip(SIDES, crop, strict=True))
+    assert record["inputs"][0]["frames"] == {"first": 4, "count": 12}
+    assert [record["parameters"][name] for name in ("width", "height", "frames")] == [crop[2], crop[3], 12]
+
+
+def test_the_whole_way_by_keyboard(visitors: Any, site: Any, uploaded: str) -> None:
+    page = visitors.visit(uploaded)
+    tab_to(page, "#frame .box")
+    page.keyboard.press("Control+Shift+ArrowLeft")
+    page.keyboard.press("ArrowRight")
+    tab_to(page, "#crop .reel button")
+    page.keyboard.press("Enter")
+    page.wait_for_function("document.querySelector('#frame video').paused")
+    tab_to(page, "#crop [data-part=first]")
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("PageUp")
+    shows(page, 11)
+    tab_to(page, "#crop [data-part=last]")
+    page.keyboard.press("ArrowLeft")
+    page.keyboard.press("ArrowLeft")
+    shows(page, 21)
+    tab_to(page, "#crop [data-part=range]", "Shift+Tab")
+    page.keyboard.press("Home")
+    page.keyboard.press("ArrowUp")
+    shows(page, 1)
+    assert (crop_of(page), time_of(page)) == ([1, 0, 151, HEIGHT], [1, 11])
+    tab_to(page, "button.main")
+    page.keyboard.press("Enter")
+    assert record_of(site, page)["inputs"][0]["frames"] == {"first": 1, "count": 11}
+
+
+def test_the_reel_says_what_it_holds(visitors: Any, uploaded: str) -> None:
+    """To who looks and to who listens."""
+    page = visitors.visit(f"{uploaded}?time=6,9")
+    expect(page.locator("#crop .reel output")).to_have_text("6–14 of 24 frames, 0.75 s")
+    ends = page.locator("#crop").get_by_role("slider")
+    said = ends.evaluate_all("all => all.map((each) => [each.ariaLabel, each.ariaValueNow, each.ariaValueText])")
+    assert said == [
+        ["Time range", "6", "6, at 0.50 s"],
+        ["First frame", "6", "6, at 0.50 s"],
+        ["Last frame", "14", "14, at 1.17 s"],
+    ]
+
+
+def test_only_the_chosen_range_plays(visitors: Any, uploaded: str) -> None:
+    """Over and over: one frame of slack, for the browser looks for the next one while the last is shown."""
+    page = visitors.visit(f"{uploaded}?time=8,6")
+    seen = page.evaluate(
+        """rate => new Promise((done) => {
+            const video = document.querySelector("#frame video");
+            const seen = [];
+            let rounds = 0;
+            const look = (now, { mediaTime }) => {
+                const frame = Math.round(mediaTime * rate);
+                if (seen.length && frame < seen.at(-1)) rounds += 1;
+                seen.push(frame);
+                if (rounds < 3) video.requestVideoFrameCallback(look);
+                else done(seen);
+            };
+            video.requestVideoFrameCallback(look);
+        })""",
+        RATE,
+    )
+    begun = seen[seen.index(8) :]
+    assert min(begun) == 8
+    assert max(begun) <= 14
+    assert len(begun) > 6
+
+
+def test_nothing_moves_by_itself_where_that_is_asked_for(visitors: Any, uploaded: str) -> None:
+    page = visitors.visit(f"{uploaded}?time=5,12", reduced_motion="reduce")
+    shows(page, 5)
+    page.get_by_role("button", name="Play").click()
+    page.wait_for_function("!document.querySelector('#frame video').paused")
+    page.get_by_role("button", name="Pause").click()
+    page.wait_for_function("document.querySelector('#frame video').paused")
+
+
+def test_a_still_method_takes_one_frame(
+    visitors: Any, site: Any, uploaded: str, screenshot: Callable[..., None]
+) -> None:
+    """The page then speaks of a frame, shows that one, and has no second number."""
+    page = visitors.visit(uploaded)
+    page.get_by_text("RPN", exact=True).click()
+    expect(page.locator("#crop").get_by_role("spinbutton", name="frame", exact=True)).to_have_value("0")
+    expect(page.locator("#time-count")).to_be_hidden()
+    expect(page.get_by_text("This method takes a still picture")).to_be_visible()
+    page.fill("#time-first", "7")
+    shows(page, 7)
+    screenshot(page, "sample-clip-frame")
+    page.get_by_role("button", name="Synthesise").click()
+    assert record_of(site, page)["inputs"][0]["frames"] == {"first": 7, "count": 1}
+    page.go_back()
+    expect(page.locator("#method-rpn")).to_be_checked()
+    expect(page.locator("#time-first")).to_have_value("7")
+
+
+def test_back_finds_the_time_range(visitors: Any, uploaded: str) -> None:
+    page = visitors.visit(uploaded)
+    drag(page, 0, 5)
+    page.fill("#frames", "30")
+    page.get_by_role("button", name="Synthesise").click()
+    page.wait_for_url("**/experiments/*")
+    page.go_back()
+    for _ in range(2):
+        expect(page.locator("#time-first")).to_have_value("5")
+        assert time_of(page) == [5, 19]
+        expect(page.locator("#frames")).to_have_value("30")
+        page.goto(page.url)
+
+
+def test_a_file_that_is_no_video_is_refused_where_it_was_chosen(visitors: Any, tmp_path: Path) -> None:
+    visitors.refusals_expected = True
+    broken = tmp_path / "clip.mp4"
+    broken.write_bytes(b"\0\0\0\x20ftypisom" + bytes(range(256)) * 8)
+    page = visitors.visit()
+    page.set_input_files("#file", broken)
+    expect(page.locator("#upload-error")).not_to_be_empty()
+    expect(page.get_by_role("button", name="Choose a photograph or clip")).to_be_visible()
+
+
+def test_a_photograph_is_told_from_a_clip_before_anything_is_sent(
+    visitors: Any, screenshot: Callable[..., None]
+) -> None:
+    """A moving method can be looked at on a photograph's page; it says what it needs, and leads to it."""
+    page = visitors.visit("/samples/gravel_gray")
+    page.locator(f"[for=method-{MOVING}]").click()
+    expect(page.locator(f"#method-{MOVING} ~ .own")).to_contain_text("It needs a clip")
+    expect(page.locator("#run-problem")).to_contain_text("still picture")
+    expect(page.locator("#sample-error")).to_contain_text("still picture")
+    screenshot(page, "sample-lacks-clip")
+    page.locator(f"#method-{MOVING} ~ .own .lacking li a").first.click()
+    page.wait_for_url(f"**/samples/*method={MOVING}*")
+    expect(page.locator("#frame video")).to_be_visible()
+    expect(page.locator(f"#method-{MOVING}")).to_be_checked()
+
+
+def test_what_is_wrong_is_said_while_the_form_is_filled_in(visitors: Any, uploaded: str) -> None:
+    """At the button and at the field, until it is right again; sending is not hindered."""
+    visitors.refusals_expected = True
+    page = visitors.visit(uploaded)
+    page.fill("#frames", "99999")
+    expect(page.locator("#run-problem")).to_contain_text("fewer frames")
+    page.fill("#frames", "1")
+    expect(page.locator("#frames-error")).to_contain_text("from 2 on")
+    expect(page.locator("#frames")).to_have_attribute("aria-invalid", "true")
+    expect(page.locator("#frames")).to_have_attribute("aria-describedby", "frames-help frames-error")
+    page.fill("#frames", "12")
+    expect(page.locator("#run-problem")).to_be_hidden()
+    expect(page.locator("#frames-error")).to_be_hidden()
+    assert page.locator("[aria-invalid]").count() == 0
+    page.fill("#frames", "99999")
+    page.get_by_role("button", name="Synthesise").click()
+    expect(page.locator(".summary")).to_contain_text("fewer frames")
+    page.fill("#frames", "12")
+    expect(page.locator(".summary")).to_have_count(0)
+
+
+def test_a_clip_as_another_input(visitors: Any, site: Any, uploaded: str) -> None:
+    """It plays nowhere, for the method takes one frame of it, which is chosen on its own reel."""
+    name = uploaded.rsplit("/", 1)[-1]
+    page = visitors.visit(f"/samples/gravel_gray?method=mix&crop=96,96,100,100&second={name}:10,10,100,100@3,1")
+    expect(page.locator("#input-2-time-first")).to_have_value("3")
+    page.locator("#input-2 [data-part=first]").focus()
+    page.keyboard.press("ArrowRight")
+    expect(page.locator("#input-2 .reel output")).to_contain_text("frame 4 of 24")
+    page.get_by_role("button", name="Synthesise").click()
+    assert [each["frames"]["first"] for each in record_of(site, page)["inputs"]] == [0, 4]
+
+
+def test_the_time_range_without_a_script(visitors: Any, site: Any, uploaded: str) -> None:
+    """The browser's own player, and two numbers."""
+    page = visitors.visit(uploaded, java_script_enabled=False)
+    expect(page.locator("#frame video")).to_have_attribute("controls", "")
+    page.fill("#time-first", "3")
+    page.fill("#time-count", "8")
+    page.get_by_role("button", name="Synthesise").click()
+    assert record_of(site, page)["inputs"][0]["frames"] == {"first": 3, "count": 8}
+
+
+def test_a_clip_on_a_phone(visitors: Any, uploaded: str, screenshot: Callable[..., None]) -> None:
+    """Nothing is wider than the screen, and a finger moves the ends of the reel."""
+    options = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True}
+    page = visitors.visit(uploaded, **options)
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    track = page.locator("#crop .track")
+    track.scroll_into_view_if_needed()
+    bounds = track.bounding_box()
+    assert bounds is not None
+    touch = page.context.new_cdp_session(page)
+    y = bounds["y"] + bounds["height"] / 2
+    for kind, at in (("touchStart", 0.0), ("touchMove", 0.1), ("touchMove", 0.5), ("touchEnd", None)):
+        points = [] if at is None else [{"x": bounds["x"] + at * bounds["width"], "y": y}]
+        touch.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+    assert time_of(page) == [12, 12]
+    screenshot(page, "sample-clip-phone")
