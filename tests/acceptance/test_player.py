@@ -1,0 +1,298 @@
+"""Films on an experiment's page: Chromium plays both files, in step, frame by frame, tiled, and without a script."""
+
+import base64
+from collections.abc import Callable
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from PIL import Image
+from playwright.sync_api import Page, expect
+
+from app.images.video.reader import read_film
+
+FRAMES = {"texture": 20, "crop": 16}
+RATE = 24
+NOISE = 1.0  # mean difference of values that colour conversion may make
+
+
+@pytest.fixture(scope="session")
+def films(site: Any) -> dict[str, Any]:
+    """The record of a finished video whose texture has more frames than its crop."""
+    body = {
+        "method": "video-rpn",
+        "inputs": [
+            {
+                "sample": "sand_under_water",
+                "crop": {"x": 40, "y": 30, "width": 96, "height": 80},
+                "frames": {"first": 4, "count": FRAMES["crop"]},
+            }
+        ],
+        "parameters": {"width": 112, "height": 80, "frames": FRAMES["texture"], "seed": 3},
+    }
+    answer = site.client.post("/api/v1/experiments", json=body, headers={"Prefer": "wait=30"})
+    assert answer.status_code == 201, answer.text
+    record = dict(answer.json())
+    assert record["status"] == "succeeded", record
+    return record
+
+
+def difference(one: np.ndarray, other: np.ndarray) -> float:
+    """Mean difference of values."""
+    return float(np.abs(one.astype(np.int16) - other.astype(np.int16)).mean())
+
+
+@pytest.fixture(scope="session")
+def arrays(site: Any, films: dict[str, Any], tmp_path_factory: pytest.TempPathFactory) -> dict[str, np.ndarray]:
+    """Name → the frames (T, H, W, 3) of its lossless file, as another decoder than the browser's finds them."""
+    found = {}
+    for name in FRAMES:
+        path: Path = tmp_path_factory.mktemp("films") / name
+        path.write_bytes(site.client.get(f"/api/v1/experiments/{films['id']}/outputs/{name}").content)
+        found[name] = np.stack(list(read_film(path)))
+        assert min(map(difference, found[name], np.roll(found[name], 1, axis=0))) > 2 * NOISE  # none is like the next
+    return found
+
+
+def address(films: dict[str, Any], query: str = "") -> str:
+    return f"/experiments/{films['id']}{query}"
+
+
+def opened(visitors: Any, path: str, **options: Any) -> Page:
+    """A page whose films are loaded."""
+    page: Page = visitors.visit(path, **options)
+    expect(page.locator(".player")).to_be_visible()
+    page.wait_for_function(
+        "() => [...document.querySelectorAll('.stage video')].every(video => video.readyState === 4)"
+    )
+    return page
+
+
+def still(visitors: Any, path: str, **options: Any) -> Page:
+    """One on which nothing moves by itself."""
+    return opened(visitors, path, reduced_motion="reduce", **options)
+
+
+def times(page: Page) -> list[float]:
+    """Where crop and texture are, in frames."""
+    script = f"[...document.querySelectorAll('.stage video')].map(video => video.currentTime * {RATE})"
+    return [float(time) for time in page.evaluate(script)]
+
+
+def drawn(page: Page, selector: str) -> np.ndarray:
+    """The pixels (H, W, 3) of a video or canvas as the browser shows it."""
+    data = page.evaluate(
+        """selector => {
+            const shown = document.querySelector(selector), canvas = document.createElement("canvas");
+            [canvas.width, canvas.height] = [shown.videoWidth ?? shown.width, shown.videoHeight ?? shown.height];
+            canvas.getContext("2d").drawImage(shown, 0, 0);
+            return canvas.toDataURL("image/png");
+        }""",
+        selector,
+    )
+    return np.asarray(Image.open(BytesIO(base64.b64decode(data.partition(",")[2]))).convert("RGB"))
+
+
+Shows = Callable[[Page, str, np.ndarray], None]
+
+
+@pytest.fixture(scope="session")
+def shows(until: Callable[..., Any]) -> Shows:
+    """Wait until a video or canvas has found a frame (H, W, 3)."""
+
+    def wait(page: Page, selector: str, frame: np.ndarray) -> None:
+        until(lambda: difference(drawn(page, selector), frame) < NOISE, f"{selector} to show its frame")
+
+    return wait
+
+
+@pytest.fixture(scope="session")
+def in_step(shows: Shows, arrays: dict[str, np.ndarray]) -> Callable[[Page, int], None]:
+    """Wait until both films show the frame of a position, each counted round its own length."""
+
+    def wait(page: Page, position: int) -> None:
+        for place, name in enumerate(("crop", "texture"), 1):
+            shows(page, f".pane:nth-child({place}) video", arrays[name][position % FRAMES[name]])
+
+    return wait
+
+
+def test_both_films_play_in_step(visitors: Any, films: dict[str, Any], screenshot: Callable[..., None]) -> None:
+    """Their positions stay within two frames of each other half of the time, however busy the machine is."""
+    page = still(visitors, address(films))  # its begin is seen, so that rounds can be counted
+    apart = page.evaluate(
+        """({ rate, frames }) => new Promise(done => {
+            const films = [...document.querySelectorAll(".stage video")];
+            const last = [0, 0], laps = [0, 0], found = [];
+            const look = () => {
+                const positions = films.map((video, index) => {
+                    if (video.currentTime < last[index] - frames[index] / rate / 2) laps[index] += 1;
+                    last[index] = video.currentTime;
+                    return laps[index] * frames[index] + video.currentTime * rate;
+                });
+                found.push(Math.abs(positions[0] - positions[1]));
+                if (Math.min(...positions) > 2 * Math.max(...frames)) done(found);
+                else requestAnimationFrame(look);
+            };
+            document.querySelector("[data-play]").click();
+            look();
+        })""",
+        {"rate": RATE, "frames": [FRAMES["crop"], FRAMES["texture"]]},
+    )
+    assert np.median(apart) < 2
+    assert not any(page.evaluate("[...document.querySelectorAll('.stage video')].map(video => video.paused)"))
+    screenshot(page, "experiment-film", full_page=False)
+
+
+@pytest.mark.parametrize("name", ["texture", "texture-mp4", "crop", "crop-mp4"])
+def test_chromium_plays_every_file(visitors: Any, films: dict[str, Any], name: str) -> None:
+    """It shows frames of the right size, and comes round to the beginning again."""
+    page = still(visitors, address(films))
+    size = page.evaluate(
+        """async source => {
+            const video = Object.assign(document.createElement("video"), { muted: true, loop: true, src: source });
+            document.querySelector("main").append(video);
+            let last = 0;
+            const looped = new Promise(done => video.addEventListener("timeupdate", () => {
+                if (video.currentTime < last) done();
+                last = video.currentTime;
+            }));
+            await video.play();
+            await looped;
+            return [video.videoWidth, video.videoHeight];
+        }""",
+        f"/api/v1/experiments/{films['id']}/outputs/{name}",
+    )
+    assert size == ([112, 80] if name.startswith("texture") else [96, 80])
+
+
+def test_who_asked_for_reduced_motion_starts_it_by_hand(visitors: Any, films: dict[str, Any]) -> None:
+    page = still(visitors, address(films))
+    expect(page.locator(".player output")).to_have_text("1 / 20")
+    assert page.evaluate("[...document.querySelectorAll('video')].every(video => video.paused && !video.autoplay)")
+    page.get_by_role("button", name="Play").click()
+    page.wait_for_function(
+        "() => [...document.querySelectorAll('.stage video')].every(video => video.currentTime > 0.1)"
+    )
+    page.get_by_role("button", name="Pause").click()
+    crop, texture = times(page)
+    assert page.evaluate("[...document.querySelectorAll('.stage video')].every(video => video.paused)")
+    assert texture % 1 == pytest.approx(0.5, abs=0.01)  # the middle of a frame
+    expect(page.locator(".player output")).to_have_text(f"{int(texture) + 1} / 20")
+    assert crop % 1 == pytest.approx(0.5, abs=0.01)
+
+
+def test_steps_show_one_frame_after_the_other(
+    visitors: Any, films: dict[str, Any], in_step: Callable[[Page, int], None]
+) -> None:
+    """Frame for frame what another decoder finds in the files; each film goes on round its own length."""
+    page = still(visitors, address(films))
+    following, previous = (page.get_by_role("button", name=name) for name in ("Next frame", "Previous frame"))
+    following.click()
+    in_step(page, 1)
+    following.click()
+    in_step(page, 2)
+    for _ in range(3):
+        previous.click()
+    in_step(page, -1)
+    expect(page.locator(".player output")).to_have_text("20 / 20")
+    page.get_by_role("slider", name="Frame").fill("18")
+    in_step(page, 17)
+
+
+def test_the_player_works_by_keys_alone(
+    visitors: Any, films: dict[str, Any], in_step: Callable[[Page, int], None]
+) -> None:
+    """Space, comma and full stop on the pictures, whose arrows still pan; arrows on the slider of frames."""
+    page = still(visitors, address(films))
+    panes, output = page.get_by_role("group", name="Pictures."), page.locator(".player output")
+    expect(panes).to_have_accessible_name(
+        "Pictures. Arrow keys move the pictures, plus and minus zoom, 0 fits them, "
+        "1 shows every pixel once, F flips. Space plays and pauses, comma and full stop step by a frame."
+    )
+    panes.press(".")
+    panes.press(".")
+    panes.press(",")
+    expect(output).to_have_text("2 / 20")
+    panes.press("ArrowRight")
+    expect(output).to_have_text("2 / 20")
+    slider = page.get_by_role("slider", name="Frame")
+    slider.press("ArrowRight")
+    expect(output).to_have_text("3 / 20")
+    expect(slider).to_have_attribute("aria-valuetext", "3 of 20")
+    slider.press("End")
+    in_step(page, 19)
+    panes.press(" ")
+    expect(page.get_by_role("button", name="Pause")).to_be_visible()
+    panes.press(" ")
+    expect(page.get_by_role("button", name="Play")).to_be_visible()
+
+
+def test_the_tiled_view_repeats_what_plays(
+    visitors: Any,
+    films: dict[str, Any],
+    arrays: dict[str, np.ndarray],
+    shows: Shows,
+    screenshot: Callable[..., None],
+) -> None:
+    """Nine times the frame, pixel beside pixel, and the next one after a step."""
+    page = still(visitors, address(films, "?view=tiled"))
+    page.get_by_role("button", name="3 × 3").click()
+    page.get_by_role("button", name="1 : 1").click()
+    tile = ".pane:nth-child(2) .tile"
+    expect(page.locator(tile)).to_be_visible()
+    for position in (0, 1):
+        shows(page, tile, np.tile(arrays["texture"][position], (3, 3, 1)))
+        page.get_by_role("button", name="Next frame").click()
+    page.get_by_role("button", name="Play").click()
+    page.wait_for_function(
+        "() => [...document.querySelectorAll('.stage video')].every(video => video.currentTime > 0.2)"
+    )
+    screenshot(page, "experiment-film-tiled", full_page=False)
+
+
+@pytest.mark.parametrize("view", ["flip", "slider"])
+def test_films_play_on_upon_each_other(visitors: Any, films: dict[str, Any], view: str) -> None:
+    """They have begun without being asked to."""
+    page = opened(visitors, address(films))
+    page.get_by_role("link", name=view.capitalize()).click()
+    expect(page.locator(".over .stage video")).to_have_count(2)
+    before = times(page)
+    page.wait_for_function(
+        """before => [...document.querySelectorAll(".stage video")].every(
+            (video, index) => video.currentTime !== before[index])""",
+        arg=[time / RATE for time in before],
+    )
+    assert not any(page.evaluate("[...document.querySelectorAll('.stage video')].map(video => video.paused)"))
+
+
+def test_without_a_script_every_film_has_its_own_controls(visitors: Any, films: dict[str, Any]) -> None:
+    page = visitors.visit(address(films), java_script_enabled=False)
+    expect(page.locator(".player")).to_be_hidden()
+    videos = page.locator(".stage video")
+    expect(videos).to_have_count(2)
+    for index, name in enumerate(("crop", "texture")):
+        for attribute in ("controls", "muted", "loop", "playsinline"):
+            expect(videos.nth(index)).to_have_attribute(attribute, "")
+        kinds = videos.nth(index).locator("source").evaluate_all("sources => sources.map(source => source.type)")
+        assert kinds == ["video/webm", "video/mp4"]
+        poster = page.request.get(videos.nth(index).get_attribute("poster"))
+        assert Image.open(BytesIO(poster.body())).size == ((96, 80) if name == "crop" else (112, 80))
+    page.get_by_role("link", name="Tiled", exact=True).click()
+    expect(page.locator(".pane img")).to_have_count(8)
+    expect(page.locator(".pane video").first).to_be_hidden()
+    page.get_by_role("link", name="Steps").click()
+    expect(page.locator(".steps img").first).to_have_attribute("alt", "Video cube of the crop")
+
+
+def test_a_film_that_cannot_be_played_is_said_to_be_so_and_keeps_no_other_waiting(
+    visitors: Any, films: dict[str, Any]
+) -> None:
+    visitors.refusals_expected = True
+    page = visitors.visit("/")
+    page.route("**/outputs/crop*", lambda route: route.fulfill(status=404))
+    page.goto(address(films))
+    expect(page.get_by_text("cannot play")).to_be_visible()
+    page.wait_for_function("() => document.querySelector('.pane:nth-child(2) video').currentTime > 0.1")
