@@ -94,7 +94,7 @@ def decode(path: Path, limits: Limits) -> Decoded:
         times.append(frame.seconds)
     pixels, alpha = with_channels(np.frombuffer(strip, np.uint8).reshape(-1, found.width, found.channels))
     media_type = found.media_type if len(times) > 1 else STILL
-    return Decoded(pixels, alpha, len(times), rate_of(times), media_type)
+    return Decoded(pixels, alpha, len(times), rate_of(times, found.said_rate), media_type)
 
 
 def read(path: Path, limits: Limits) -> Decoded | Clip:

@@ -78,7 +78,7 @@ def _store_clip(clip: Clip, destination: Path) -> Kept:
         8,
         clip.channels % 2 == 0,
         len(times),
-        rate_of(times),
+        rate_of(times, clip.said_rate),
         clip.media_type if len(times) > 1 else STILL,
     )
 

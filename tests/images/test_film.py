@@ -12,6 +12,7 @@ import pytest
 
 from app.errors import BrokenFileError, UnsupportedFormatError
 from app.images.decode import Decoded
+from app.images.video.writers import write_film
 from tests.images.clips import BT601, BT709, FULL, LIMITED, Film, lossless, moving, psnr, video
 
 Read = Callable[..., Decoded]
@@ -170,6 +171,18 @@ def test_the_rate_is_exact_even_where_times_are_rounded_to_milliseconds(read: Re
     codec = "libx264" if form == "mp4" else "libvpx"
     decoded = read(video(moving(30, 16, 16), codec, form=form, rate=Fraction(rate)))
     assert decoded.rate == pytest.approx(float(Fraction(rate)), abs=0.0006)
+
+
+@pytest.mark.parametrize("channels", [1, 3])
+@pytest.mark.parametrize("rate", [24, 24000 / 1001, 100 / 7])
+def test_our_own_lossless_videos_are_read_as_they_were_written(
+    read: Read, tmp_path: Path, channels: int, rate: float
+) -> None:
+    film = moving(40)[..., :channels]
+    write_film(iter(film), tmp_path / "film", "webm", count=40, rate=rate)
+    decoded = read((tmp_path / "film").read_bytes())
+    np.testing.assert_array_equal(film_of(decoded), film)
+    assert decoded.rate == pytest.approx(rate, rel=1e-7)
 
 
 def test_of_uneven_times_the_rate_is_the_average(read: Read) -> None:

@@ -32,7 +32,8 @@ class Frame(NamedTuple):
 class Clip:
     """A video whose ``frames`` are decoded while they are taken, once.
 
-    ``channels`` is 1 grey, 2 grey and alpha, 3 RGB, 4 RGB and alpha; ``media_type`` is what the file is.
+    ``channels`` is 1 grey, 2 grey and alpha, 3 RGB, 4 RGB and alpha; ``media_type`` is what the file is, ``said_rate``
+    how many frames a second it says that it has.
     """
 
     width: int
@@ -40,6 +41,7 @@ class Clip:
     channels: int
     media_type: str
     frames: Iterator[Frame]
+    said_rate: float = 0.0
 
 
 def check_clip(width: int, height: int, frames: int, seconds: float, limits: ClipLimits, *, more: bool = False) -> None:
@@ -100,10 +102,11 @@ def within(frames: Iterator[Frame], limits: ClipLimits) -> Iterator[Frame]:
         yield frame
 
 
-def rate_of(seconds: Sequence[float]) -> float:
+def rate_of(seconds: Sequence[float], said: float = 0.0) -> float:
     """Frames a second, from when each is shown: the average, within 1 and 120; 0 of a single frame.
 
-    A usual rate is taken for what differs from it by the rounding of times to milliseconds alone.
+    What the header has ``said``, or else a usual rate, is taken for an average that differs from it by the rounding of
+    times to milliseconds alone.
 
     Examples
     --------
@@ -115,9 +118,8 @@ def rate_of(seconds: Sequence[float]) -> float:
     intervals, span = len(seconds) - 1, seconds[-1] - seconds[0]
     rate = intervals / span if span > 0 else USUAL_RATE
     usual = min((float(round(rate)), round(rate) / 1.001), key=lambda each: abs(each - rate))
-    if usual and abs(intervals / usual - span) <= ROUNDING:
-        rate = usual
-    return round(min(FASTEST, max(SLOWEST, rate)), 3)
+    meant = (each for each in (said, usual) if each and abs(intervals / each - span) <= ROUNDING)
+    return min(FASTEST, max(SLOWEST, next(meant, round(rate, 3))))
 
 
 def _length(frames: int, rate: float) -> str:

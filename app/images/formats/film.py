@@ -90,7 +90,7 @@ def decode(data: bytes, container: Container, max_pixels: int, limits: ClipLimit
         channels = 3
     if channels == 1 and not film.is_grey():
         channels = 3
-    return Clip(film.width, film.height, channels, container.media_type, film.frames(channels))
+    return Clip(film.width, film.height, channels, container.media_type, film.frames(channels), film.rate)
 
 
 class _Film:
@@ -103,7 +103,7 @@ class _Film:
         with _telling(), self._open() as opened:
             stream = _stream(opened)
             self._check(opened, stream)
-            self._rate = float(stream.average_rate or USUAL_RATE)
+            self.rate = float(stream.average_rate or USUAL_RATE)
             aspect = stream.sample_aspect_ratio
             first = next(_decoded(opened, stream, self._decoder(stream)), None)
         if first is None:
@@ -153,7 +153,7 @@ class _Film:
                     threads=1,
                 )
                 pixels = picture.to_ndarray().reshape(height, width, channels).view(np.uint8)
-                seconds = index / self._rate if frame.pts is None else float(frame.pts * (stream.time_base or 1))
+                seconds = index / self.rate if frame.pts is None else float(frame.pts * (stream.time_base or 1))
                 yield Frame(upright(pixels, self._orientation), seconds)
 
     def _open(self) -> InputContainer:
