@@ -1,7 +1,5 @@
 """From a method's frames to its files: their order, their content, and what stays when a run is stopped."""
 
-import subprocess
-import sys
 import threading
 import weakref
 from pathlib import Path
@@ -15,8 +13,8 @@ from app.images.convert import GROUND
 from app.images.video.reader import read_film
 from app.methods.films import crop_film, film_memory, texture_film
 from app.methods.model import Context, Film, Source
-from app.settings import ROOT
 from tests.images.clips import psnr
+from tests.images.video.memory import printed
 from tests.images.video.natural import natural_film
 from tests.synthesis.stopping import StopError, stops_at
 
@@ -153,23 +151,22 @@ def test_progress_stops_the_encoders_too(tmp_path):
 
 
 GROWTH = """
-import resource, sys
+import sys
 import numpy as np
 from pathlib import Path
 from app.methods.films import texture_film
 from app.methods.model import Context
 side, channels, scratch = int(sys.argv[1]), int(sys.argv[2]), Path(sys.argv[3])
-noise = np.random.default_rng(0).integers(0, 256, (side + 30, side + 30, channels), dtype=np.uint8)
-frames = (noise[t : t + side, t : t + side] for t in range(30))
-before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-size = {"width": side, "height": side, "channels": channels, "count": 30}
+noise = np.random.default_rng(0).integers(0, 256, (side + 16, side + 16, channels), dtype=np.uint8)
+frames = (noise[t : t + side, t : t + side] for t in range(16))
+before = peak()
+size = {"width": side, "height": side, "channels": channels, "count": 16}
 list(texture_film(frames, **size, rate=24.0, context=Context(8, 2, lambda stage, part: None, scratch)))
-print((resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) * 1024)
+print(peak() - before)
 """
 
 
 @pytest.mark.parametrize("channels", [1, 3])
 def test_the_memory_it_says_is_enough_and_not_far_too_much(tmp_path, channels):
-    command = [sys.executable, "-c", GROWTH, "640", str(channels), str(tmp_path)]
-    grown = int(subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout)
-    assert grown < film_memory(640, 640, channels) < 2 * grown
+    grown = printed(GROWTH, 512, channels, tmp_path)
+    assert grown < film_memory(512, 512, channels) < 2 * grown

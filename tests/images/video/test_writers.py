@@ -1,7 +1,5 @@
 """Films as files: what is decoded again, at which rate, in which size, and what it costs."""
 
-import subprocess
-import sys
 from fractions import Fraction
 from pathlib import Path
 
@@ -13,8 +11,8 @@ from PIL import Image
 from app.images.video import writers
 from app.images.video.reader import first_frame, read_film
 from app.images.video.writers import FilmWriter, write_film
-from app.settings import ROOT
 from tests.images.clips import psnr
+from tests.images.video.memory import printed
 from tests.images.video.natural import natural_film
 
 PHOTOGRAPHS = ["sand_desert009.png", "sky_clouds.jpg", "soil_ground010.png", "planks_floor_wood01.png"]
@@ -156,8 +154,8 @@ def test_what_is_not_finished_does_not_stay(tmp_path, kind, frames):
     assert list(tmp_path.iterdir()) == []
 
 
-PEAK = """
-import resource, sys
+WRITING = """
+import sys
 import numpy as np
 from pathlib import Path
 from app.images.video.writers import write_film
@@ -165,17 +163,12 @@ kind, side, count = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
 noise = np.random.default_rng(0).integers(0, 256, (side + 40, side + 40, 3), dtype=np.uint8)
 frames = (np.ascontiguousarray(noise[t % 39 : t % 39 + side, t % 37 : t % 37 + side]) for t in range(count))
 write_film(frames, Path(sys.argv[4]), kind, count=count, rate=24.0)
-print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024)
+print(peak())
 """
 
 
 @pytest.mark.parametrize(("kind", "side", "few"), [("webm", 256, 20), ("mp4", 256, 20), ("webp", 128, 100)])
 def test_memory_does_not_grow_with_the_number_of_frames(tmp_path, kind, side, few):
-    """Peak of a process of its own: four times the frames may not cost a third of what the further ones have."""
-
-    def peak(count: int) -> int:
-        command = [sys.executable, "-c", PEAK, kind, str(side), str(count), str(tmp_path / "film")]
-        return int(subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout)
-
-    further = 3 * few * side * side * 3
-    assert peak(4 * few) - peak(few) < further / 3
+    """Four times the frames may not cost a quarter of what the further ones have."""
+    fewer, more = (printed(WRITING, kind, side, count, tmp_path / "film") for count in (few, 4 * few))
+    assert more - fewer < 3 * few * side * side * 3 / 4
