@@ -1,11 +1,12 @@
-"""The place of a texture where a patch of any shape is matched best, for many patches at once.
+"""The place of a texture where a patch is matched best, for many patches at once.
 
-The patch of a pattern P is a set of pixels around its centre p. At a place q of the texture I it differs by
+The patch of a pattern P is a rectangle about its centre p. At a place q of the texture I it differs by
 
-    d(q) = Σ_x |P(x) − I(x − p + q)|² = Σ |P|² + Σ (|I|² − 2 P · I),
+    d(q) = Σ_x |P(x) − I(x − p + q)|² = Σ |P|² + Σ |I|² − 2 Σ P · I,
 
-the sums over the patch and over the channels. Of a few candidates q the last sum is a scalar product of what is there
-with (1, −2P); of all places at once it is a correlation, which is computed in the Fourier domain by overlapping tiles.
+the sums over the rectangle and the channels. The second one is a difference of sums that are known beforehand. The
+third one is a scalar product for each of a few candidates q, and a correlation for all places at once: that is computed
+in the Fourier domain, by tiles that overlap.
 
 Values are compared in whole sixteenths of an 8-bit level. So all sums are whole numbers, which double precision adds
 up exactly in whatever order: a distance does not depend on how it was computed, nor on the number of threads.
@@ -19,6 +20,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.random import SFC64, Generator, SeedSequence
 from numpy.typing import NDArray
 from scipy import fft
 
@@ -26,9 +29,9 @@ from app.synthesis.work import Work
 
 STEPS = 16 * 255  # of the values' range
 BLOCK = 16  # patches that share random numbers, and a task
-GATHERED = 1 << 15  # pixels of the texture at a time: what stays in the cache
+GATHERED = 1 << 14  # values of the texture that are compared together: what stays in the cache
 LEAST_TILE = 128
-STREAM = 5  # keeps the numbers apart from others that are drawn from the same seed
+STREAM = 2  # of the seed's; cells and their random sources have those before
 
 Real = NDArray[np.float32]
 Double = NDArray[np.float64]
@@ -43,15 +46,15 @@ class Patches:
     ----------
     centres : ndarray of int, shape (n, 2)
         Row and column of every patch's centre p in the pattern.
-    owners : ndarray of int, shape (H, W)
-        The patch of each pixel of the pattern.
+    boxes : ndarray of int, shape (n, 4)
+        Every patch's top, bottom, left and right in the pattern, with bottom and right one past the last.
     first, last : ndarray of int, shape (n, 2)
         The places q of the texture, from ``first`` to ``last`` inclusive in rows and in columns, that the centre may
-        take. The patch at each of them lies within the texture.
+        take. The patch at each of them lies within the texture; the centre itself need not.
     """
 
     centres: Index
-    owners: Index
+    boxes: Index
     first: Index
     last: Index
 
@@ -64,7 +67,7 @@ class Matches:
     """The best places.
 
     ``places`` (n, 2) are rows and columns of q, ``errors`` (n,) the sums of squared differences there, in the values'
-    own unit squared, and ``sizes`` (n,) the pixels of the patches.
+    own unit squared, and ``sizes`` (n,) the patches' pixels.
     """
 
     places: Index
@@ -96,20 +99,19 @@ def best_matches(
     extents = patches.last - patches.first + 1
     every = (extents.prod(1) <= candidates) | (candidates == 0)
 
-    def match(block: slice) -> None:
-        drawn = np.arange(len(patches))[block]
-        if not every[drawn].all():
-            generator = np.random.Generator(np.random.SFC64([seed, STREAM, block.start]))
-            numbers = generator.random((candidates, len(drawn), 2))
-            for column, patch in enumerate(drawn):
-                if not every[patch]:
-                    places = patches.first[patch] + (numbers[:, column] * extents[patch]).astype(np.intp)
-                    search.among(patch, places)
-                    work.alive()
-        for _ in search.everywhere(drawn[every[drawn]]):
+    def match(first: int) -> None:
+        block = np.arange(first, min(first + BLOCK, len(patches)))
+        if not every[block].all():
+            generator = Generator(SFC64(SeedSequence(seed, spawn_key=(STREAM, first))))
+            numbers = generator.random((candidates, len(block), 2))
+            for patch in block[~every[block]].tolist():
+                places = patches.first[patch] + (numbers[:, patch - first] * extents[patch]).astype(np.intp)
+                search.among(patch, places)
+                work.alive()
+        for _ in search.everywhere(block[every[block]]):
             work.alive()
 
-    work.run("matching", match, [slice(begin, begin + BLOCK) for begin in range(0, len(patches), BLOCK)])
+    work.run("matching", match, range(0, len(patches), BLOCK))
     return Matches(search.places, search.errors * (peak / STEPS) ** 2, search.sizes)
 
 
@@ -123,85 +125,89 @@ class _Search:
     """Keeps, for each patch, the best place found and its distance in steps squared."""
 
     def __init__(self, texture: Double, pattern: Double, patches: Patches) -> None:
-        self._patches = patches
-        self._rows, self._columns = texture.shape[:2]
-        squares = np.square(texture).sum(2, keepdims=True)
-        # A pixel is C values and the sum of their squares, less the middle of what that can be: the transforms of small
-        # numbers are more exact.
-        self._offset = float(texture.shape[2] * (STEPS // 2) ** 2 // 2)
-        self._texture = np.concatenate([texture, squares - self._offset], axis=2)
-        self._factors = np.concatenate([-2 * pattern, np.ones((*pattern.shape[:2], 1))], axis=2)
-        self._energies = np.bincount(patches.owners.ravel(), np.square(pattern).sum(2).ravel(), len(patches))
-        self.sizes: Index = np.bincount(patches.owners.ravel(), minlength=len(patches)).astype(np.intp)
-        self._order = np.argsort(patches.owners.ravel(), kind="stable")
-        self._ends = np.cumsum(self.sizes)
+        self._texture, self._pattern, self._patches = texture, pattern, patches
+        # Sums of |I|² over all that is above and to the left.
+        squares = np.square(texture).sum(2)
+        self._above = np.pad(squares, ((1, 0), (1, 0))).cumsum(0).cumsum(1)
+        boxes = patches.boxes
+        self._shapes = boxes[:, 1::2] - boxes[:, ::2]
+        self._tops = boxes[:, ::2] - patches.centres
+        self.sizes: Index = self._shapes.prod(1)
         self.places = patches.first.copy()
         self.errors = np.full(len(patches), np.inf)
 
-    def _pixels(self, patch: int) -> tuple[Index, Index, Double]:
-        """Rows and columns of a patch relative to its centre, and the factors (K, C + 1) of its pixels."""
-        end = self._ends[patch]
-        y, x = np.divmod(self._order[end - self.sizes[patch] : end], self._patches.owners.shape[1])
-        row, column = self._patches.centres[patch]
-        return y - row, x - column, self._factors[y, x]
+    def _patch(self, patch: int) -> Double:
+        top, bottom, left, right = self._patches.boxes[patch]
+        return self._pattern[top:bottom, left:right]
 
-    def _offer(self, patch: int, place: Index | tuple[int, int], sum_: float) -> None:
-        error = sum_ + self._energies[patch] + self._offset * self.sizes[patch]
+    def _offer(self, patch: int, place: Index, sum_: float) -> None:
+        error = sum_ + float(np.square(self._patch(patch)).sum())
         if error < self.errors[patch]:
             self.errors[patch], self.places[patch] = error, place
 
     def among(self, patch: int, places: Index) -> None:
         """Compare a patch with the given places (N, 2)."""
-        y, x, factors = self._pixels(patch)
-        pixels = y * self._columns + x
-        corners = places[:, 0] * self._columns + places[:, 1]
-        texture = self._texture.reshape(-1, self._texture.shape[2])
-        step = max(1, GATHERED // max(1, len(pixels)))
-        sums = np.empty(len(places))
+        height, width = self._shapes[patch]
+        channels = self._texture.shape[2]
+        y, x = (places + self._tops[patch]).T
+        above = self._above
+        sums = above[y + height, x + width] - above[y, x + width] - above[y + height, x] + above[y, x]
+        flat = self._texture.reshape(len(self._texture), -1)
+        windows = sliding_window_view(flat, (height, width * channels))[:, ::channels]
+        factors = self._patch(patch).reshape(-1)
+        step = max(1, GATHERED // factors.size)
         for begin in range(0, len(places), step):
             part = slice(begin, begin + step)
-            found = texture.take(corners[part, None] + pixels, axis=0, mode="clip")
-            np.einsum("nkc,kc->n", found, factors, out=sums[part])
+            sums[part] -= 2 * np.einsum("nk,k->n", windows[y[part], x[part]].reshape(-1, factors.size), factors)
         best = int(sums.argmin())
-        self._offer(patch, places[best], sums[best])
+        self._offer(patch, places[best], float(sums[best]))
 
     def everywhere(self, chosen: Index) -> Iterator[None]:
         """Compare patches with all places that their centres may take, tile by tile."""
         if not len(chosen):
             return
-        shapes = [self._pixels(int(patch)) for patch in chosen]
-        tops = np.array([[y.min(initial=0), x.min(initial=0)] for y, x, _ in shapes])
-        bottoms = np.array([[y.max(initial=0), x.max(initial=0)] for y, x, _ in shapes])
-        side = int((bottoms - tops).max()) + 1
-        tile = fft.next_fast_len(max(LEAST_TILE, 4 * side), real=True)
-        # The upper left corners of the boxes around the patches run over these places.
-        first, last = self._patches.first[chosen] + tops, self._patches.last[chosen] + tops
-        spectra = self._spectra(shapes, tops, tile)
-        step = tile - side + 1
-        for top in range(int(first[:, 0].min()), int(last[:, 0].max()) + 1, step):
-            for left in range(int(first[:, 1].min()), int(last[:, 1].max()) + 1, step):
-                part = np.moveaxis(self._texture[top : top + tile, left : left + tile], 2, 0)
-                sums = self._correlations(spectra, part, tile)
-                for number, patch in enumerate(chosen):
-                    begin = np.maximum(first[number] - (top, left), 0)
-                    end = np.minimum(last[number] - (top, left), step - 1) + 1
-                    if (begin < end).all():
-                        valid = sums[number, begin[0] : end[0], begin[1] : end[1]]
-                        y, x = divmod(int(valid.argmin()), valid.shape[1])
-                        place = np.array((top, left)) + begin + (y, x) - tops[number]
-                        self._offer(int(patch), place, valid[y, x])
+        largest = self._shapes[chosen].max(0)
+        tile = fft.next_fast_len(max(LEAST_TILE, 4 * int(largest.max())), real=True)
+        # The upper left corners of the patches run over these places.
+        first, last = (corner[chosen] + self._tops[chosen] for corner in (self._patches.first, self._patches.last))
+        spectra = self._spectra(chosen, tile)
+        step = tile - largest + 1
+        for top in range(int(first[:, 0].min()), int(last[:, 0].max()) + 1, step[0]):
+            for left in range(int(first[:, 1].min()), int(last[:, 1].max()) + 1, step[1]):
+                products = self._correlations(spectra, top, left, tile)
+                corner = np.array((top, left))
+                begins, ends = np.maximum(first, corner), np.minimum(last, corner + step - 1) + 1
+                for number in np.flatnonzero((begins < ends).all(1)):
+                    patch, begin, end = int(chosen[number]), begins[number], ends[number]
+                    sums = self._energies(begin, end, self._shapes[patch])
+                    sums -= 2 * products[number, begin[0] - top : end[0] - top, begin[1] - left : end[1] - left]
+                    best = np.array(np.unravel_index(sums.argmin(), sums.shape))
+                    self._offer(patch, begin + best - self._tops[patch], float(sums[*best]))
                 yield
 
-    def _spectra(self, shapes: list[tuple[Index, Index, Double]], tops: Index, tile: int) -> NDArray[np.complex128]:
-        """Conjugate spectra of the factors, shape (C + 1, patches, tile, tile // 2 + 1)."""
-        planes = np.zeros((self._texture.shape[2], len(shapes), tile, tile))
-        for number, (y, x, factors) in enumerate(shapes):
-            planes[:, number, y - tops[number, 0], x - tops[number, 1]] = factors.T
+    def _energies(self, begin: Index, end: Index, shape: Index) -> Double:
+        """Σ |I|² over rectangles of a shape with their upper left corners from ``begin`` to ``end`` − 1."""
+        (top, left), (bottom, right), (height, width) = begin, end, shape
+        rows, lower = slice(top, bottom), slice(top + height, bottom + height)
+        columns, further = slice(left, right), slice(left + width, right + width)
+        above = self._above
+        energies: Double = above[lower, further] - above[rows, further]
+        energies -= above[lower, columns]
+        energies += above[rows, columns]
+        return energies
+
+    def _spectra(self, chosen: Index, tile: int) -> NDArray[np.complex128]:
+        """Conjugate spectra of patches, shape (C, patches, tile, tile // 2 + 1)."""
+        planes = np.zeros((self._texture.shape[2], len(chosen), tile, tile))
+        for number, patch in enumerate(chosen.tolist()):
+            height, width = self._shapes[patch]
+            planes[:, number, :height, :width] = self._patch(patch).transpose(2, 0, 1)
         spectra: NDArray[np.complex128] = fft.rfft2(planes)
         return np.conj(spectra, out=spectra)
 
-    def _correlations(self, spectra: NDArray[np.complex128], part: Double, tile: int) -> Double:
-        """Σ (|I|² − 2 P · I) for all patches at all places of a part of the texture, shape (patches, tile, tile)."""
+    def _correlations(self, spectra: NDArray[np.complex128], top: int, left: int, tile: int) -> Double:
+        """Σ P · I for patches with their upper left corners everywhere in a tile, shape (patches, tile, tile)."""
+        part = self._texture[top : top + tile, left : left + tile].transpose(2, 0, 1)
         of_part = fft.rfft2(part, (tile, tile))
         product = spectra[0] * of_part[0]
         for factor, other in zip(spectra[1:], of_part[1:], strict=True):

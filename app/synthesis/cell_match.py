@@ -1,0 +1,68 @@
+"""Where each cell of a pattern is best taken from in a texture: a source for every cell.
+
+The patch that is compared is a square about the cell's centre with sides of one and a half spacings: it holds the cell
+and where it blends most with its neighbours. Patches chosen for the cell alone stand out from what surrounds them in
+the texture, and have a halo in the joins. All of the blend zone lies inside the texture, as for sources that are drawn
+at random.
+
+References
+----------
+Harrison, "Patchwork texture synthesis", technical report, Monash University, 2002, section 5.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.synthesis.cells import Cells
+from app.synthesis.patch_match import Matches, Patches, best_matches
+from app.synthesis.work import Work
+
+HALF = 0.75  # of a square's side, in spacings
+
+Real = NDArray[np.float32]
+Ints = NDArray[np.int64]
+
+
+def match_cells(
+    texture: Real, pattern: Real, cells: Cells, *, peak: float, candidates: int, seed: int, work: Work
+) -> Matches:
+    """The source of every cell that matches the pattern best, among some candidates or all.
+
+    Parameters
+    ----------
+    texture : ndarray of float32, shape (H', W', C)
+        At least `app.synthesis.cells.least_sample` pixels a side.
+    pattern : ndarray of float32, shape (H, W, C)
+        Of the size of the cells' plane; its values are in the texture's unit.
+    cells : Cells
+        Of a plane, not of a torus.
+    peak : float
+        Of the texture's values, which are in [0, ``peak``].
+    candidates : int
+        How many places are compared for each cell; 0: all. From one seed, more of them include fewer.
+    seed : int
+    work : Work
+        Its stage ``"matching"``.
+
+    Returns
+    -------
+    Matches
+        For each of ``cells.count`` cells.
+    """
+    boxes = _squares(cells)
+    size = np.array(texture.shape[:2])
+    # The square and all that is seen of the blend zone lie inside.
+    first = np.maximum(-cells.zones[:, ::2], cells.centres - boxes[:, ::2])
+    last = size - np.maximum(cells.zones[:, 1::2], boxes[:, 1::2] - cells.centres)
+    patches = Patches(cells.centres, boxes, first, last)
+    return best_matches(texture, pattern, patches, peak=peak, candidates=candidates, seed=seed, work=work)
+
+
+def _squares(cells: Cells) -> Ints:
+    """What is compared of the plane for every cell: what its square has of it, or the border where it is nearest."""
+    half = round(HALF * cells.unit)
+    size = np.array((cells.height, cells.width))
+    boxes = np.empty((cells.count, 4), np.int64)
+    boxes[:, ::2] = np.clip(cells.centres - half, 0, np.maximum(size - half - 1, 0))
+    boxes[:, 1::2] = np.clip(cells.centres + half + 1, np.minimum(half + 1, size), size)
+    return boxes
