@@ -5,9 +5,11 @@ from functools import lru_cache
 from typing import Literal
 
 from app.experiments.model import Sample
+from app.experiments.pictures import check_frame
 from app.experiments.ports import BlobStore
 from app.images.crop import Rectangle
 from app.images.read import read_crop
+from app.images.strip import place
 from app.synthesis.luminance import Real, luminance
 from app.synthesis.structure import CENTRE, Structure, structure_index
 
@@ -66,17 +68,20 @@ class Meter:
         self._measured = lru_cache(KEPT)(self._measure)
         self._photograph = lru_cache(PHOTOGRAPHS)(self._read)
 
-    def structure(self, sample: Sample, crop: Rectangle | None, sigma: float) -> Structure:
+    def structure(self, sample: Sample, crop: Rectangle | None, sigma: float, frame: int = 0) -> Structure:
         """The structure index of a crop, of all of the sample if None; of a large one, its centre 1024 × 1024 pixels.
+
+        Of a video it is that of one frame.
 
         Raises
         ------
         InvalidInputError
-            If the crop reaches outside the sample or holds transparent pixels.
+            If the crop or the frame is outside the sample, or holds transparent pixels.
         """
+        check_frame(sample, frame)
         whole = Rectangle(0, 0, sample.width, sample.height)
-        area = measured((crop or whole).within(sample.width, sample.height))
-        small = sample.width * sample.height <= SMALL and not sample.transparent
+        area = place(measured((crop or whole).within(sample.width, sample.height)), frame, sample.height)
+        small = sample.width * sample.height <= SMALL and not sample.transparent and not sample.moving
         return self._measured(sample.digest, area, sigma, whole if small else None)
 
     def _measure(self, digest: str, area: Rectangle, sigma: float, whole: Rectangle | None) -> Structure:

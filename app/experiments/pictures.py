@@ -46,8 +46,7 @@ class Pictures:
         InvalidInputError
             If there is no such frame.
         """
-        if not 0 <= frame < sample.frames:
-            raise InvalidInputError(f"The sample has {_count(sample)}; the first is number 0.", "frame")
+        check_frame(sample, frame)
         if size is None:
             return self._still(sample, frame), PNG
         bound = next((step for step in SIZES if step >= size), SIZES[-1])
@@ -144,8 +143,11 @@ def _part(sample: Sample, frame: int) -> str:
     return f"{sample.digest}-{sample.height}-{frame}" if sample.moving else sample.digest
 
 
-def _count(sample: Sample) -> str:
-    return f"{sample.frames} frames" if sample.moving else "one frame"
+def check_frame(sample: Sample, frame: int) -> None:
+    """Raise `InvalidInputError` if a sample has no frame of this number."""
+    if not 0 <= frame < sample.frames:
+        count = f"{sample.frames} frames" if sample.moving else "one frame"
+        raise InvalidInputError(f"The sample has {count}; the first is number 0.", "frame")
 
 
 def _thumbnail_size(name: str, crop: Output, texture: Output) -> tuple[int, int]:

@@ -131,9 +131,11 @@ class Service:
         """A video sample as a file that plays, and its media type. Raises `NotFoundError`, also for a still picture."""
         return self._pictures.film(self._store.sample(sample_id), file_format)
 
-    def structure(self, sample_id: str, crop: Rectangle | None = None, sigma: float = SIGMA) -> Structure:
+    def structure(
+        self, sample_id: str, crop: Rectangle | None = None, sigma: float = SIGMA, frame: int = 0
+    ) -> Structure:
         """How structured a crop is, see `Meter.structure`. Raises `NotFoundError` or `InvalidInputError`."""
-        return self._meter.structure(self._store.sample(sample_id), crop, sigma)
+        return self._meter.structure(self._store.sample(sample_id), crop, sigma, frame)
 
     # experiments
 

@@ -18,7 +18,7 @@ from app.samples import bundled
 from app.settings import Settings
 from app.synthesis.structure import Structure
 from app.web.deps import ServiceDep, SettingsDep
-from app.web.inputs import crop_names
+from app.web.inputs import crop_names, time_names
 from app.web.templating import METER_END, meter_place, render
 
 SIDE = 56.0  # of a picture on the scale, whose width is 1000
@@ -104,7 +104,8 @@ def form_structure(service: Service, sample: Sample, values: Mapping[str, str]) 
     """Measure the crop that a form's fields name, for pages without a script; None if it cannot be measured."""
     with suppress(InvalidInputError):
         crop = Rectangle.parse(",".join(values.get(name, "") for name in crop_names(1)))
-        return service.structure(sample.id, crop)
+        first = values.get(time_names(1)[0], "")
+        return service.structure(sample.id, crop, frame=int(first) if first.isdecimal() and sample.moving else 0)
     return None
 
 

@@ -8,6 +8,7 @@ class Meter {
     this.root = root;
     const around = root.closest("fieldset, form");
     this.fields = SIDES.map((side) => around.querySelector(`[name$="crop.${side}"]`));
+    this.frame = around.querySelector("[name$='time.first']");
     this.select = around.querySelector("select[name$=sample]");
     this.bar = root.querySelector(".meter-bar");
     this.asked = "";
@@ -22,7 +23,8 @@ class Meter {
     const sample = this.select ? this.select.value : this.root.dataset.sample;
     const crop = this.fields.map((field) => field.value);
     if (!sample || !crop.every((value) => /^\d+$/.test(value))) return "";
-    return `/api/v1/samples/${encodeURIComponent(sample)}/structure?crop=${crop.join(",")}`;
+    const frame = this.frame.closest(".time").hidden || !/^\d+$/.test(this.frame.value) ? "" : `&frame=${this.frame.value}`;
+    return `/api/v1/samples/${encodeURIComponent(sample)}/structure?crop=${crop.join(",")}${frame}`;
   }
 
   async follow() {

@@ -40,8 +40,20 @@ def test_the_scale_can_be_chosen(site):
     assert get(site, sigma=0).json()["delta"] != get(site, sigma=1.5).json()["delta"]
 
 
+def test_of_a_clip_a_frame_is_measured(site, film, animation):
+    """The one that is asked for, else the first."""
+    frames = film(3, 40, 40)
+    frames[2] = 128
+    frames[2, :, 20:] = 200
+    address = site.upload(animation(frames))["url"] + "/structure"
+    deltas = [site.client.get(address, params={"frame": number}).json()["delta"] for number in range(3)]
+    assert site.client.get(address).json()["delta"] == deltas[0]
+    assert deltas[0] < 0.1 < deltas[2]
+
+
 @pytest.mark.parametrize(
-    "query", [{"crop": "1,2,3"}, {"crop": "0,0,0,9"}, {"crop": "60,0,5,5"}, {"sigma": -1}, {"sigma": "nan"}]
+    "query",
+    [{"crop": "1,2,3"}, {"crop": "0,0,0,9"}, {"crop": "60,0,5,5"}, {"sigma": -1}, {"sigma": "nan"}, {"frame": 1}],
 )
 def test_what_does_not_fit_is_refused_with_a_problem_that_names_it(site, query):
     answer = get(site, **query)

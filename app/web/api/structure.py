@@ -53,11 +53,12 @@ async def read_structure(
     sigma: Annotated[
         float, Query(ge=0, le=LARGEST_SIGMA, description="Scale in pixels, for δ and z. The verdict is meant for 2.")
     ] = SIGMA,
+    frame: Annotated[int, Query(ge=0, le=1_000_000, description="Of a video: which frame, from 0.")] = 0,
 ) -> StructureIndex:
     """Measure a crop, within a tenth of a second for 512 × 512 pixels: random phase models reproduce micro-textures."""
     sample = await run_in_threadpool(service.sample, sample_id)
     area = Rectangle.parse(crop) if crop else Rectangle(0, 0, sample.width, sample.height)
-    found = await in_upload_thread(request, service.structure, sample_id, area, sigma)
+    found = await in_upload_thread(request, service.structure, sample_id, area, sigma, frame)
     said = reading(found.delta)
     return StructureIndex(
         delta=round(found.delta, 4),
