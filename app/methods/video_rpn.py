@@ -176,7 +176,7 @@ EXPLANATION = Explanation(
 
 VIDEO_RPN = Method(
     name="video-rpn",
-    title="Random phase noise of a video (video RPN)",
+    title="Random phase noise in three dimensions (video RPN)",
     summary="Keeps the Fourier modulus of a clip over time and space and draws its phase at random.",
     inputs=(Slot("clip", "Clip", "A video; crop a rectangle and a time in which all looks alike.", moving=True),),
     params=VideoRpnParams,
