@@ -110,8 +110,8 @@ EXPLANATION = Explanation(
         "The modulus knows how fast everything moves, and where to. An oscillation in space that travels is an "
         "oscillation in time too, and the pair of frequencies says with which velocity; what travels together lies on "
         "a plane through the origin. So the texture drifts, rises and boils as the clip does, though no shape in it "
-        "was ever there. In the section through the spectrum a steady motion is a slanted line, and water shows the "
-        "curve on which its waves' speed depends on their length.",
+        "was ever there. In the section through the spectrum a steady motion is a slanted line; motions of several "
+        "speeds are a fan of lines, and waves of all lengths a slanted cloud.",
         "The result is periodic in all three directions: it plays in a loop without a jump, and tiles. The clip is "
         "not, so each of its frames is replaced by its periodic component, and the jump from the last frame to the "
         "first is taken out in the same way along time, where it would come back as a flicker. For a larger or a "
