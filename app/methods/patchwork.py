@@ -17,9 +17,9 @@ from app.methods.random_phase import INPUTS
 from app.methods.references import PATCHWORK as REPORT
 from app.synthesis.cell_shapes import reach
 from app.synthesis.cells import LEFT_OUT, Cells, jittered_cells, least_sample
-from app.synthesis.field import ROWS, row_blocks
+from app.synthesis.field import row_blocks
 from app.synthesis.levels import Levels
-from app.synthesis.patchwork import Patchwork, painted
+from app.synthesis.patchwork import BAND, TILE, Patchwork, painted
 from app.synthesis.team import Team
 
 BANDS = 4  # that are in work at once
@@ -77,7 +77,7 @@ def memory(sizes: Sequence[Size], params: PatchworkParams) -> int:
     edge = reach(params.grid * 1.5, params.sharpness, LEFT_OUT)
     crop = 4 * size.channels * (2 * size.width * size.height + (size.width + 2 * edge) * (size.height + 2 * edge))
     cells = BYTES_OF_CELL * (height // params.grid + 8) * (width // params.grid + 8) + 8 * (2 * edge + 1) ** 2
-    return crop + cells + BANDS * ROWS * width * 4 * (size.channels + 6) + 2 * size.channels * width * height
+    return crop + cells + BANDS * BAND * 4 * (size.channels + 6) * (width + TILE) + 2 * size.channels * width * height
 
 
 def run(sources: Sequence[Source], params: PatchworkParams, context: Context) -> Iterator[Picture]:
@@ -99,7 +99,7 @@ def run(sources: Sequence[Source], params: PatchworkParams, context: Context) ->
         def streamed(rows: Callable[[int, int], Real], channels: int, peak: float, progress: Progress) -> bytes:
             writer = PngWriter(width, height, channels, context.depth)
             levels = Levels(writer.write, channels, 0, peak, 2**context.depth - 1)
-            blocks = row_blocks(height)
+            blocks = row_blocks(height, BAND)
             team.run(lambda block: levels(block[0], rows(*block)), blocks, lambda part: progress("texture", part))
             return writer.finish()
 

@@ -15,12 +15,13 @@ from numpy.typing import NDArray
 
 REACH = 3.0  # spacings after which a weight is 0
 JITTER = 0.75  # of its square's side, in which a centre lies
-LATTICE = 8  # points along a spacing
+LATTICE = 13  # points along a spacing, or all of its pixels where there are fewer
 AT_ONCE = 1 << 18  # points that are looked at together
 NEAR = 2  # spacings within which centres make up nearly all of Σ w²
 ROUNDING = 2  # pixels that a centre may be off for lying on a whole one
 
 LEAST_SQUARE = np.float32(1e-6)  # of a distance, to take logarithms of
+EPSILON = 1e-5  # what single precision may be wrong by
 
 Ints = NDArray[np.int64]
 Real = NDArray[np.float32]
@@ -54,24 +55,30 @@ class Axis:
         places: Ints = first + (length * ((1 - JITTER) / 2 + JITTER * jitter)).astype(np.int64)
         return places
 
+    @property
+    def _along(self) -> int:
+        return min(LATTICE, ceil(self.spacing))
+
     def points(self) -> Ints:
-        """Pixels at which shapes are found out, shape (points of a square, count); some come twice."""
+        """Pixels at which shapes are found out, from the first to the last of each square, shape (points, count)."""
         edges = self.edges[self.beyond : self.beyond + self.count + 1]
-        along = min(LATTICE, ceil(self.spacing))
-        points: Ints = edges[:-1] + np.arange(along)[:, None] * np.diff(edges) // along
+        along = self._along
+        points: Ints = edges[:-1] + np.arange(along)[:, None] * (np.diff(edges) - 1) // max(1, along - 1)
         return points
 
     @property
-    def step(self) -> int:
-        """Most pixels from a point to the next."""
-        return ceil(ceil(self.spacing) / LATTICE)
+    def off(self) -> int:
+        """Most pixels from a pixel to the nearest point."""
+        return ceil((ceil(self.spacing) - 1) / max(1, self._along - 1)) // 2
 
     def gap(self, offset: int) -> float:
         """Pixels that a centre is away at least from points of a square so many squares before or behind its own."""
         return max(0.0, (abs(offset) - 1 + (1 - JITTER) / 2) * self.spacing - ROUNDING)
 
 
-def thresholds(squares: Callable[[], Iterable[Real]], sharpness: float, shares: tuple[float, ...]) -> list[Real]:
+def thresholds(
+    squares: Callable[[], Iterable[Real]], sharpness: float, shares: tuple[float, ...], off: float = 0.0
+) -> list[Real]:
     """Squared distances T_s(x)² up to which a centre's part of a pixel can be a share s, in spacings.
 
     Parameters
@@ -81,6 +88,9 @@ def thresholds(squares: Callable[[], Iterable[Real]], sharpness: float, shares: 
     sharpness : float
     shares : tuple of float
         1 means the largest part of all.
+    off : float
+        Make them so large that a centre which is that near to a pixel at most so many spacings aside counts too: there
+        the distance to a centre differs by no more than that, and T_s by no more than T_s / nearest times that.
     """
     nearest = reduce(np.minimum, squares())
     np.maximum(nearest, LEAST_SQUARE, out=nearest)
@@ -96,8 +106,11 @@ def thresholds(squares: Callable[[], Iterable[Real]], sharpness: float, shares: 
     norm = np.sqrt(norm)  # times (1 − shoulder)
     found = []
     for share in shares:
-        least = shoulder + np.float32(share) * norm
-        found.append(nearest if share == 1 else nearest * least ** np.float32(-2 / sharpness))
+        ratio: Real = (
+            np.ones_like(norm) if share == 1 else (shoulder + np.float32(share) * norm) ** np.float32(-1 / sharpness)
+        )
+        reached = np.sqrt(nearest) * ratio + np.float32(off + EPSILON) * (1 + ratio)
+        found.append(np.square(reached, out=reached))
     return found
 
 
@@ -126,13 +139,14 @@ class _Band:
         self._rows, self._columns = points[0][:, :, None], points[1][:, None, :]
         self._unit = max(axis.spacing for axis in axes)
 
-    def around(self, distance: float) -> Iterator[tuple[int, int]]:
-        """Offsets of squares, in rows and columns, whose centres may be nearer than a distance in spacings."""
+    def around(self, distance: float) -> Iterator[tuple[int, int, float]]:
+        """Offsets of squares, in rows and columns, whose centres may be nearer than a distance, and how near."""
         rows, columns = self._axes
         for dr in range(-rows.beyond, rows.beyond + 1):
             for dc in range(-columns.beyond, columns.beyond + 1):
-                if hypot(rows.gap(dr), columns.gap(dc)) <= distance * self._unit:
-                    yield dr, dc
+                nearest = hypot(rows.gap(dr), columns.gap(dc)) / self._unit
+                if nearest <= distance:
+                    yield dr, dc, nearest
 
     def squares(self, dr: int, dc: int) -> tuple[slice, slice]:
         """Where the squares at an offset are in arrays over all squares."""
@@ -152,7 +166,7 @@ class _Band:
 
     def near(self) -> Iterator[Real]:
         """Those to the centres that matter most."""
-        return (self.distances(*self.away(*offset)) for offset in self.around(NEAR))
+        return (self.distances(*self.away(dr, dc)) for dr, dc, _ in self.around(NEAR))
 
 
 def extents(rows: Axis, columns: Axis, y: Ints, x: Ints, sharpness: float, shares: tuple[float, ...]) -> Real:
@@ -173,24 +187,28 @@ def extents(rows: Axis, columns: Axis, y: Ints, x: Ints, sharpness: float, share
         Top, bottom, left, right, bottom and right being one past the last; infinite, top and left greater than bottom
         and right, where a centre has no such pixel.
     """
-    points = rows.points(), columns.points()
-    steps = rows.step, columns.step
+    points, off = (rows.points(), columns.points()), (rows.off, columns.off)
+    unit = max(rows.spacing, columns.spacing)
     boxes = np.empty((len(shares), 4, *y.shape), np.float32)
     boxes[:, ::2], boxes[:, 1::2] = np.inf, -np.inf
     chunk = max(1, AT_ONCE // (len(points[0]) * points[1].size))
     for first in range(0, rows.count, chunk):
         band = _Band((rows, columns), (points[0][:, first : first + chunk], points[1]), first, y, x)
-        limits = thresholds(band.near, sharpness, shares)
-        for share, limit, box in zip(shares, limits, boxes, strict=True):
-            for offset in band.around(farthest(sharpness, share)):
-                where, away = band.squares(*offset), band.away(*offset)
-                inside = band.distances(*away) <= limit
-                for axis, (d, step) in enumerate(zip(away, steps, strict=True)):
+        limits = thresholds(band.near, sharpness, shares, hypot(*off) / unit)
+        for dr, dc, nearest in band.around(max(farthest(sharpness, share) for share in shares)):
+            where, away = band.squares(dr, dc), band.away(dr, dc)
+            squares = band.distances(*away)
+            for share, limit, box in zip(shares, limits, boxes, strict=True):
+                if nearest > farthest(sharpness, share):
+                    continue
+                inside = squares <= limit
+                for axis, d in enumerate(away):
                     hit = inside.any(axis=1 - axis)
                     low, high = box[2 * axis][where], box[2 * axis + 1][where]
-                    np.minimum(low, np.where(hit, d - (step - 1), np.inf).min(axis=0), out=low)
-                    np.maximum(high, np.where(hit, d + step, -np.inf).max(axis=0), out=high)
-    unit = max(rows.spacing, columns.spacing)
+                    np.minimum(low, np.where(hit, d - np.float32(off[axis]), np.float32(np.inf)).min(axis=0), out=low)
+                    np.maximum(
+                        high, np.where(hit, d + np.float32(off[axis] + 1), np.float32(-np.inf)).max(axis=0), out=high
+                    )
     for share, box in zip(shares, boxes, strict=True):
         pixels = reach(unit, sharpness, share)
         np.maximum(box[::2], -pixels, out=box[::2])

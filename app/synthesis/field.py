@@ -66,9 +66,9 @@ class Noise:
     add_smooth: bool = False
 
 
-def row_blocks(height: int) -> list[tuple[int, int]]:
+def row_blocks(height: int, rows: int = ROWS) -> list[tuple[int, int]]:
     """First and last-plus-one row of every block."""
-    return [(first, min(first + ROWS, height)) for first in range(0, height, ROWS)]
+    return [(first, min(first + rows, height)) for first in range(0, height, rows)]
 
 
 class Field:
