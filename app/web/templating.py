@@ -30,8 +30,8 @@ def label(method: str) -> str:
     ['RPN', 'Mix', 'Modulus and phase', 'Rayleigh', 'Heeger–Bergen', 'Efros–Leung']
     """
     words = r"\W+(?:\w+\W+)?".join(method.split("-"))
-    found = re.search(rf"\b{words}\b", METHODS[method].title, re.IGNORECASE)
-    name = found[0] if found else method.replace("-", " ")
+    found = re.findall(rf"(?=\b({words})\b)", METHODS[method].title, re.IGNORECASE)
+    name = min(found, key=len, default=method.replace("-", " "))
     return name[:1].upper() + name[1:]
 
 

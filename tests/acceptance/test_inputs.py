@@ -102,6 +102,7 @@ def test_the_whole_way_with_two_samples_by_keyboard(visitors: Any, site: Any) ->
     assert record["inputs"][1] == {
         "sample": "grass_jungle002",
         "crop": dict(zip(SIDES, (64, 301, 374, 384), strict=True)),
+        "frames": {"first": 0, "count": 1},
     }
     assert record["parameters"]["weights"] == "1,3"
 
