@@ -1,6 +1,8 @@
 """From a method's frames to its films."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from functools import partial
+from pathlib import Path
 from typing import Any, NamedTuple
 from uuid import uuid4
 
@@ -27,6 +29,7 @@ TEXTURE = (
     _File("preview", "Preview", "webp", "image/webp"),
 )
 BASE_BYTES, PIXEL_BYTES = 40_000_000, {1: 190, 3: 280}  # of a frame, by its channels; measured at 512² to 2048²
+HANDED_OVER = 0.9  # of the time that writing a crop takes: its encoders then have all frames
 CROP = (_File("crop", "Crop", "webm", "video/webm"), _File("crop-mp4", "Crop as MP4", "mp4", "video/mp4"))
 
 
@@ -60,7 +63,8 @@ def texture_film(
     """
     size = width, height, channels, count
     cube = VideoCube(*size)
-    yield from _written(_rounded(frames, cube), TEXTURE, size, rate, context, "encoding")
+    finishing = partial(context.progress, "encoding")
+    yield from _written(_rounded(frames, cube), TEXTURE, size, rate, context.scratch, finishing)
     yield _picture_of(cube, "cube", "Video cube")
 
 
@@ -74,10 +78,11 @@ def crop_film(source: Source, context: Context) -> Iterator[Picture]:
 
     def reported() -> Iterator[Frame]:
         for index, frame in enumerate(frames):
-            context.progress("crop", index / count)
+            context.progress("crop", HANDED_OVER * index / count)
             yield frame
 
-    yield from _written(_rounded(reported(), cube), CROP, size, rate, context, "crop")
+    finishing = partial(context.between(HANDED_OVER, 1), "crop")
+    yield from _written(_rounded(reported(), cube), CROP, size, rate, context.scratch, finishing)
     yield _picture_of(cube, "crop-cube", "Video cube of the crop")
 
 
@@ -94,20 +99,20 @@ def _written(
     files: tuple[_File, ...],
     size: tuple[int, int, int, int],
     rate: float,
-    context: Context,
-    stage: str,
+    scratch: Path,
+    finishing: Callable[[float], None],
 ) -> Iterator[Picture]:
     width, height, channels, count = size
     writers: list[FilmWriter] = []
     try:
         for file in files:
-            path = context.scratch / uuid4().hex
+            path = scratch / uuid4().hex
             writer = FilmWriter(path, file.kind, width=width, height=height, channels=channels, count=count, rate=rate)
             writers.append(writer)
         with Encoding(writers) as encoding:
             for frame in frames:
                 encoding.write(frame)
-            encoding.finish(lambda part: context.progress(stage, part))
+            encoding.finish(finishing)
         for file in files:
             writer = writers.pop(0)  # whoever takes the picture owns the file
             yield Picture(

@@ -115,6 +115,7 @@ def test_an_input_is_shown_exactly_as_it_was_cropped(tmp_path):
     assert (np.stack(list(read_film(made["crop"].data))) == film).all()
     assert {stage for stage, _ in calls} == {"crop"}
     assert calls[0][1] == 0
+    assert calls == sorted(calls)
     assert calls[-1][1] == 1
 
 

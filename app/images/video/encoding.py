@@ -23,7 +23,7 @@ class Encoding:
 
     def __init__(self, writers: Sequence[FilmWriter]) -> None:
         self._writers = writers
-        self._threads = [ThreadPoolExecutor(1, f"encode-{writer.path.suffix}") for writer in writers]
+        self._threads = [ThreadPoolExecutor(1, "encode") for _ in writers]
         self._pending: list[deque[Future[None]]] = [deque() for _ in writers]
 
     def write(self, frame: Frame) -> None:

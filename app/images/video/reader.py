@@ -5,9 +5,12 @@ from pathlib import Path
 
 import av
 import numpy as np
-from av.video.reformatter import ColorRange
+from av.video.reformatter import ColorRange, Interpolation
 
 from app.images.video.writers import Frame, rows
+
+# Of chroma between its places; by itself the library repeats it, and is a level too dark.
+INTERPOLATED = Interpolation.BILINEAR | Interpolation.ACCURATE_RND | Interpolation.FULL_CHR_H_INT
 
 
 def read_film(path: Path) -> Iterator[Frame]:
@@ -17,7 +20,7 @@ def read_film(path: Path) -> Iterator[Frame]:
             if frame.format.name == "yuv420p" and frame.color_range == ColorRange.JPEG:
                 yield rows(frame.planes[0])[: frame.height, : frame.width, None].copy()
             else:
-                yield frame.to_ndarray(format="rgb24").astype(np.uint8, copy=False)
+                yield frame.to_ndarray(format="rgb24", interpolation=INTERPOLATED).astype(np.uint8, copy=False)
 
 
 def first_frame(path: Path) -> Frame:
