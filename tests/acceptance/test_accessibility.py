@@ -19,6 +19,7 @@ def pages(site: Any, experiment: dict[str, Any]) -> dict[str, str]:
     site.run("gravel_gray", (96, 96, 256, 256))
     mixture = site.run("gravel_gray", (96, 96, 192, 192), "mix", "towel_red", "rockface_pink", seed=2)
     convergence = site.run("gravel_gray", (96, 96, 128, 128), "dsn", convergence=True, spot="disc")
+    films = site.run("sand_under_water", (40, 40, 96, 96), "video-rpn", frames=8)
     return {
         "home": "/",
         "sample": "/samples/scene_china",
@@ -31,6 +32,10 @@ def pages(site: Any, experiment: dict[str, Any]) -> dict[str, str]:
         "tiled": f"/experiments/{experiment['id']}?view=tiled&tiles=3",
         "steps": f"/experiments/{experiment['id']}?view=steps",
         "compare": f"/compare/{experiment['id']}/{other['id']}",
+        "films": f"/experiments/{films['id']}",
+        "films-tiled": f"/experiments/{films['id']}?view=tiled",
+        "methods": "/methods",
+        "method-of-films": "/methods/video-rpn",
         "archive": "/archive",
         "nothing": "/nothing-here",
     }
