@@ -12,6 +12,7 @@ from app.methods.patchwork import PATCHWORK
 from app.methods.rayleigh import RAYLEIGH
 from app.methods.rpn import RPN
 from app.methods.texton import TEXTON
+from app.methods.transfer import TRANSFER
 from app.methods.video_patchwork import VIDEO_PATCHWORK
 from app.methods.video_rpn import VIDEO_RPN
 
@@ -26,6 +27,7 @@ METHODS: dict[str, Method] = {
     "heeger-bergen": HEEGER_BERGEN,
     "efros-leung": EFROS_LEUNG,
     "patchwork": PATCHWORK,
+    "transfer": TRANSFER,
     "video-rpn": VIDEO_RPN,
     "video-patchwork": VIDEO_PATCHWORK,
 }

@@ -31,6 +31,7 @@ STEPS = 16 * 255  # of the values' range
 BLOCK = 16  # patches that share random numbers, and a task
 GATHERED = 1 << 14  # values of the texture that are compared together: what stays in the cache
 LEAST_TILE = 128
+IN_TILES = 1 << 19  # pixels that are transformed together
 STREAM = 2  # of the seed's; cells and their random sources have those before
 
 Real = NDArray[np.float32]
@@ -163,15 +164,18 @@ class _Search:
         self._offer(patch, places[best], float(sums[best]))
 
     def everywhere(self, chosen: Index) -> Iterator[None]:
-        """Compare patches with all places that their centres may take, tile by tile."""
-        if not len(chosen):
-            return
-        largest = self._shapes[chosen].max(0)
-        tile = fft.next_fast_len(max(LEAST_TILE, 4 * int(largest.max())), real=True)
+        """Compare patches with all places that their centres may take."""
+        if len(chosen):
+            largest = self._shapes[chosen].max(0)
+            tile = fft.next_fast_len(max(LEAST_TILE, 4 * int(largest.max())), real=True)
+            together = max(1, IN_TILES // tile**2)
+            for begin in range(0, len(chosen), together):
+                yield from self._by_tiles(chosen[begin : begin + together], tile, tile - largest + 1)
+
+    def _by_tiles(self, chosen: Index, tile: int, step: Index) -> Iterator[None]:
         # The upper left corners of the patches run over these places.
         first, last = (corner[chosen] + self._tops[chosen] for corner in (self._patches.first, self._patches.last))
         spectra = self._spectra(chosen, tile)
-        step = tile - largest + 1
         for top in range(int(first[:, 0].min()), int(last[:, 0].max()) + 1, step[0]):
             for left in range(int(first[:, 1].min()), int(last[:, 1].max()) + 1, step[1]):
                 products = self._correlations(spectra, top, left, tile)
