@@ -15,6 +15,9 @@ from app.images.video.reader import read_film
 
 FRAMES = {"texture": 20, "crop": 16}
 RATE = 24
+VIDEOS = "[...document.querySelectorAll('.stage video')]"
+PAUSED = f"{VIDEOS}.every(video => video.paused)"
+PLAYING = f"{VIDEOS}.every(video => !video.paused && video.currentTime > 0.1)"
 NOISE = 1.0  # mean difference of values that colour conversion may make
 
 
@@ -64,9 +67,7 @@ def opened(visitors: Any, path: str, **options: Any) -> Page:
     """A page whose films are loaded."""
     page: Page = visitors.visit(path, **options)
     expect(page.locator(".player")).to_be_visible()
-    page.wait_for_function(
-        "() => [...document.querySelectorAll('.stage video')].every(video => video.readyState === 4)"
-    )
+    page.wait_for_function(f"() => {VIDEOS}.every(video => video.readyState === 4)")
     return page
 
 
@@ -77,8 +78,7 @@ def still(visitors: Any, path: str, **options: Any) -> Page:
 
 def times(page: Page) -> list[float]:
     """Where crop and texture are, in frames."""
-    script = f"[...document.querySelectorAll('.stage video')].map(video => video.currentTime * {RATE})"
-    return [float(time) for time in page.evaluate(script)]
+    return [float(time) for time in page.evaluate(f"{VIDEOS}.map(video => video.currentTime * {RATE})")]
 
 
 def drawn(page: Page, selector: str) -> np.ndarray:
@@ -142,7 +142,7 @@ def test_both_films_play_in_step(visitors: Any, films: dict[str, Any], screensho
         {"rate": RATE, "frames": [FRAMES["crop"], FRAMES["texture"]]},
     )
     assert np.median(apart) < 2
-    assert not any(page.evaluate("[...document.querySelectorAll('.stage video')].map(video => video.paused)"))
+    page.wait_for_function(f"() => {PLAYING}")
     screenshot(page, "experiment-film", full_page=False)
 
 
@@ -173,12 +173,10 @@ def test_who_asked_for_reduced_motion_starts_it_by_hand(visitors: Any, films: di
     expect(page.locator(".player output")).to_have_text("1 / 20")
     assert page.evaluate("[...document.querySelectorAll('video')].every(video => video.paused && !video.autoplay)")
     page.get_by_role("button", name="Play").click()
-    page.wait_for_function(
-        "() => [...document.querySelectorAll('.stage video')].every(video => video.currentTime > 0.1)"
-    )
+    page.wait_for_function(f"() => {PLAYING}")
     page.get_by_role("button", name="Pause").click()
     crop, texture = times(page)
-    assert page.evaluate("[...document.querySelectorAll('.stage video')].every(video => video.paused)")
+    assert page.evaluate(PAUSED)
     assert texture % 1 == pytest.approx(0.5, abs=0.01)  # the middle of a frame
     expect(page.locator(".player output")).to_have_text(f"{int(texture) + 1} / 20")
     assert crop % 1 == pytest.approx(0.5, abs=0.01)
@@ -247,25 +245,28 @@ def test_the_tiled_view_repeats_what_plays(
         shows(page, tile, np.tile(arrays["texture"][position], (3, 3, 1)))
         page.get_by_role("button", name="Next frame").click()
     page.get_by_role("button", name="Play").click()
-    page.wait_for_function(
-        "() => [...document.querySelectorAll('.stage video')].every(video => video.currentTime > 0.2)"
-    )
+    page.wait_for_function(f"() => {PLAYING}")
     screenshot(page, "experiment-film-tiled", full_page=False)
 
 
-@pytest.mark.parametrize("view", ["flip", "slider"])
+@pytest.mark.parametrize("view", ["Flip", "Slider"])
 def test_films_play_on_upon_each_other(visitors: Any, films: dict[str, Any], view: str) -> None:
     """They have begun without being asked to."""
     page = opened(visitors, address(films))
-    page.get_by_role("link", name=view.capitalize()).click()
+    page.get_by_role("link", name=view).click()
     expect(page.locator(".over .stage video")).to_have_count(2)
-    before = times(page)
-    page.wait_for_function(
-        """before => [...document.querySelectorAll(".stage video")].every(
-            (video, index) => video.currentTime !== before[index])""",
-        arg=[time / RATE for time in before],
-    )
-    assert not any(page.evaluate("[...document.querySelectorAll('.stage video')].map(video => video.paused)"))
+    before = page.evaluate(f"{VIDEOS}.map(video => video.currentTime)")
+    page.wait_for_function(f"before => {VIDEOS}.every((video, at) => video.currentTime !== before[at])", arg=before)
+    page.wait_for_function(f"() => {PLAYING}")
+
+
+def test_what_is_not_seen_stands_still_until_it_is(visitors: Any, films: dict[str, Any]) -> None:
+    page = opened(visitors, address(films))
+    page.wait_for_function(f"() => {PLAYING}")
+    page.get_by_role("link", name="Steps").click()
+    page.wait_for_function(f"() => {PAUSED}")
+    page.get_by_role("link", name="Side by side").click()
+    page.wait_for_function(f"() => {PLAYING}")
 
 
 def test_without_a_script_every_film_has_its_own_controls(visitors: Any, films: dict[str, Any]) -> None:
