@@ -16,7 +16,7 @@ from app.methods.pictures import coordinate_colours, crops, encode, refuse_infin
 from app.methods.random_phase import INPUTS
 from app.methods.references import PATCHWORK as REPORT
 from app.synthesis.cell_shapes import reach
-from app.synthesis.cells import LEFT_OUT, Cells, jittered_cells, least_sample
+from app.synthesis.cells import LEFT_OUT, SLACK, Cells, jittered_cells, least_sample
 from app.synthesis.field import row_blocks
 from app.synthesis.levels import Levels
 from app.synthesis.patchwork import BAND, TILE, Patchwork, painted
@@ -74,7 +74,7 @@ def memory(sizes: Sequence[Size], params: PatchworkParams) -> int:
     """The crop three times over with its margin, the cells, what is in work, and the file."""
     size = sizes[0]
     width, height = params.width or size.width, params.height or size.height
-    edge = reach(params.grid * 1.5, params.sharpness, LEFT_OUT)
+    edge = reach(params.grid * (1 + SLACK), params.sharpness, LEFT_OUT)
     crop = 4 * size.channels * (2 * size.width * size.height + (size.width + 2 * edge) * (size.height + 2 * edge))
     cells = BYTES_OF_CELL * (height // params.grid + 8) * (width // params.grid + 8) + 8 * (2 * edge + 1) ** 2
     return crop + cells + BANDS * BAND * 4 * (size.channels + 6) * (width + TILE) + 2 * size.channels * width * height

@@ -31,6 +31,7 @@ from app.synthesis.cell_shapes import REACH, Axis, extents, reach
 LEFT_OUT = 1 / 512  # of a pixel: a part that is smaller changes an 8-bit value by less than a half
 LOG_LEFT_OUT = np.float32(log(LEFT_OUT))
 BLEND = 1 / 16  # of a pixel: a cell's blend zone is where its part is larger
+SLACK = 0.1  # of a spacing by which the squares may be wider than asked for, all of them together
 AT_CENTRE = 30.0  # logarithm of how much heavier a centre is than the pixel beside it
 
 Ints = NDArray[np.int64]
@@ -239,7 +240,8 @@ def jittered_cells(height: int, width: int, *, grid: int, sharpness: float, tile
     height, width : int
         Of the plane, at least 1.
     grid : int
-        Spacing in pixels, at least 4; it is changed a little so that a whole number of squares fits.
+        Spacing in pixels, at least 4. It becomes smaller, or at most a tenth larger, so that a whole number of squares
+        fits.
     sharpness : float
         f, from 1 to 40.
     tileable : bool
@@ -295,7 +297,7 @@ def random(seed: int, stream: int) -> Generator:
 
 
 def _axes(height: int, width: int, grid: int, sharpness: float) -> tuple[Axis, Axis]:
-    counts = [max(1, round(size / grid)) for size in (height, width)]
+    counts = [max(1, ceil(size / grid - SLACK)) for size in (height, width)]
     unit = max(height / counts[0], width / counts[1])
     pixels = reach(unit, sharpness, LEFT_OUT)
     rows, columns = (
