@@ -19,6 +19,10 @@ from app.images.decode import Limits
 AT_ONCE = max(2, os.cpu_count() or 2)
 WAIT_SECONDS = 60.0
 GRACE_SECONDS = 10.0  # the server kills its children itself; this much later it must be hung
+ENVIRONMENT = {
+    "OPENBLAS_NUM_THREADS": "1",  # a process that forks has better only one thread
+    "MALLOC_ARENA_MAX": "1",  # every thread of a decoder would reserve memory that counts as used
+}
 ROOT = Path(__file__).resolve().parents[2]
 ERRORS: dict[str, type[AppError]] = {
     error.__name__: error for error in (BrokenFileError, TooLargeError, UnsupportedFormatError)
@@ -85,7 +89,7 @@ class DecodingServer:
                     stdin=theirs.fileno(),
                     stdout=subprocess.DEVNULL,
                     cwd=ROOT,
-                    env=os.environ | {"OPENBLAS_NUM_THREADS": "1"},  # a process that forks has better only one thread
+                    env=os.environ | ENVIRONMENT,
                     start_new_session=True,
                 )
         return self._control

@@ -83,6 +83,8 @@ def test_an_mp4_may_be_laid_out_for_the_web_or_in_fragments(read: Read, tmp_path
         ("libx264", "yuv420p", 718, BT601, LIMITED, False),
         ("libx264", "yuv420p", 720, BT709, LIMITED, False),
         ("libvpx-vp9", "yuv420p", 64, BT709, LIMITED, True),
+        ("libvpx", "yuv420p", 64, BT709, FULL, True),
+        ("libvpx", "yuv420p", 64, BT601, LIMITED, False),
         ("libsvtav1", "yuv420p10le", 64, 9, LIMITED, True),
     ],
 )
@@ -91,7 +93,7 @@ def test_known_colours_come_back_within_two_levels(
 ) -> None:
     """The wrong matrix or range is 10 to 40 levels off. Rounding to 8 bits of luma and chroma is up to 1.5 levels."""
     patches = np.repeat(np.repeat(COLOURS.reshape(2, 4, 3), height // 2, 0), 32, 1)
-    options = {"lossless": "1"} if "vp9" in codec else {"crf": "4"}
+    options = {"lossless": "1"} if "vp9" in codec else {"crf": "4"} | ({"b": "4M"} if codec == "libvpx" else {})
     form = "webm" if "vp" in codec else "mp4"
     data = video(
         patches[None].repeat(2, 0), codec, pixels, form=form, matrix=matrix, colours=colours, tagged=tagged,

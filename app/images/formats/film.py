@@ -35,7 +35,6 @@ DAMAGED = (
 )
 # By the name of the codec: which decoder reads the alpha channel too, where another is the better one without.
 CODECS = {"h264": None, "vp8": "libvpx", "vp9": "libvpx-vp9", "av1": None}
-DECODERS = "h264,vp8,vp9,libvpx,libvpx-vp9,libdav1d,av1"
 THREADS = 2
 # Without the last two, chroma is not interpolated and every channel is one or two levels of 255 too dark.
 SCALING = Interpolation.BILINEAR | Interpolation.ACCURATE_RND | Interpolation.FULL_CHR_H_INT
@@ -50,7 +49,7 @@ MATRICES = {
 }
 HD_LINES = 720
 NEUTRAL = 128
-HIGH_DYNAMIC_RANGE = (ColorTrc.SMPTE2084, ColorTrc.ARIB_STD_B67)
+HIGH_DYNAMIC_RANGE = {ColorTrc.SMPTE2084, ColorTrc.ARIB_STD_B67}
 PADDING = 1 << 16  # pixels
 OBLONG = 4  # pixels said to be so much wider than high, or higher than wide, are a mistake
 DISPLAY_MATRIX = struct.Struct("=9i")
@@ -104,11 +103,13 @@ class _Film:
             stream = _stream(opened)
             self._check(opened, stream)
             self.rate = float(stream.average_rate or USUAL_RATE)
-            aspect = stream.sample_aspect_ratio
-            first = next(_decoded(opened, stream, self._decoder(stream)), None)
+            told = stream.codec_context.colorspace, stream.codec_context.color_range, stream.codec_context.color_trc
+            decoder = self._decoder(stream)
+            first = next(_decoded(opened, stream, decoder), None)
+            aspect = stream.sample_aspect_ratio or decoder.sample_aspect_ratio
         if first is None:
             raise BrokenFileError(DAMAGED)
-        if first.color_trc in HIGH_DYNAMIC_RANGE:
+        if {first.color_trc, told[2]} & HIGH_DYNAMIC_RANGE:
             raise UnsupportedFormatError(
                 "This video is HDR, whose colours a texture of ordinary range cannot hold: "
                 "save it as SDR, MP4 with H.264, and upload the new file."
@@ -116,8 +117,11 @@ class _Film:
         self._coded = first.width, first.height
         self._scaled = _squared(first.width, first.height, aspect)
         check_size(*self._scaled, max_pixels, NAME)
-        self._matrix = _matrix(first)
-        self._range = ColorRange.JPEG if first.color_range == ColorRange.JPEG else ColorRange.MPEG
+        coded = first.colorspace, first.color_range
+        if decoder.codec.canonical_name == "vp8" and told[0] != UNSPECIFIED:
+            coded = told[:2]  # VP8 itself can say nothing but BT.601; browsers record BT.709 in full range
+        self._matrix = _matrix(coded[0], first.height)
+        self._range = ColorRange.JPEG if coded[1] == ColorRange.JPEG else ColorRange.MPEG
         self._orientation = _orientation(first)
         self.width, self.height = self._scaled[::-1] if self._orientation > 4 else self._scaled
         self.channels = 4 if first.format.name.startswith("yuva") else 1 if _is_neutral(first) else 3
@@ -158,11 +162,12 @@ class _Film:
 
     def _open(self) -> InputContainer:
         # The demuxer is named and no protocol allowed: nothing but these bytes is opened, whatever they refer to.
+        # No codec is allowed either: the demuxer would use it to look into every track, sound among them.
         return av.open(
             io.BytesIO(self._data),
             "r",
             format=self._demuxer,
-            options={"protocol_whitelist": "", "codec_whitelist": DECODERS, "max_pixels": str(self._coded_pixels)},
+            options={"protocol_whitelist": "", "codec_whitelist": "none"},
             metadata_errors="replace",
         )
 
@@ -244,14 +249,14 @@ def _squared(width: int, height: int, aspect: Fraction | None) -> tuple[int, int
     return (round(width * aspect), height) if aspect > 1 else (width, round(height / aspect))
 
 
-def _matrix(frame: VideoFrame) -> Colorspace:
-    if frame.colorspace in (RGB, UNSPECIFIED):
-        return Colorspace.ITU601 if frame.height < HD_LINES else Colorspace.ITU709
-    if frame.colorspace not in MATRICES:
+def _matrix(coefficients: int, lines: int) -> Colorspace:
+    if coefficients in (RGB, UNSPECIFIED):
+        return Colorspace.ITU601 if lines < HD_LINES else Colorspace.ITU709
+    if coefficients not in MATRICES:
         raise UnsupportedFormatError(
             "This video has colours of a kind that is not read: save it as MP4 with H.264, and upload the new file."
         )
-    return MATRICES[frame.colorspace]
+    return MATRICES[coefficients]
 
 
 def _orientation(frame: VideoFrame) -> int:
