@@ -72,6 +72,7 @@ def _home(
 ) -> Response:
     context = {
         "limit": settings.max_upload_bytes,
+        "longest": {"seconds": settings.max_film_seconds, "frames": settings.max_film_frames},
         "samples": service.bundled_samples(),
         "newest": service.page(limit=NEWEST).experiments,
         "upload_error": error,
