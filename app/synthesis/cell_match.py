@@ -50,10 +50,11 @@ def match_cells(
         For each of ``cells.count`` cells.
     """
     boxes = _squares(cells)
-    size = np.array(texture.shape[:2])
-    # The square and all that is seen of the blend zone lie inside.
-    first = np.maximum(-cells.zones[:, ::2], cells.centres - boxes[:, ::2])
-    last = size - np.maximum(cells.zones[:, 1::2], boxes[:, 1::2] - cells.centres)
+    compared = boxes - np.repeat(cells.centres, 2, axis=1)
+    seen = np.all(cells.zones[:, ::2] < cells.zones[:, 1::2], axis=1, keepdims=True)
+    zones = np.where(seen, cells.zones, compared)
+    first = -np.minimum(zones[:, ::2], compared[:, ::2])
+    last = np.array(texture.shape[:2]) - np.maximum(zones[:, 1::2], compared[:, 1::2])
     patches = Patches(cells.centres, boxes, first, last)
     return best_matches(texture, pattern, patches, peak=peak, candidates=candidates, seed=seed, work=work)
 
