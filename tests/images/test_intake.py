@@ -116,7 +116,12 @@ def test_those_who_wait_too_long_for_their_turn_are_told(directory: Path, monkey
 
 @pytest.mark.parametrize(
     ("content", "error"),
-    [(b"", BrokenFileError), (b"GIF89a", BrokenFileError), (b"BM", UnsupportedFormatError), (b"\x89PNG\r\n\x1a\n", BrokenFileError)],
+    [
+        (b"", BrokenFileError),
+        (b"GIF89a", BrokenFileError),
+        (b"BM", UnsupportedFormatError),
+        (b"\x89PNG\r\n\x1a\n", BrokenFileError),
+    ],
 )
 def test_a_refusal_leaves_no_file(tmp_path: Path, directory: Path, content: bytes, error: type[AppError]) -> None:
     (tmp_path / "upload").write_bytes(content)
