@@ -12,6 +12,9 @@ class Meter {
     this.select = around.querySelector("select[name$=sample]");
     this.bar = root.querySelector(".meter-bar");
     this.asked = "";
+    // What is not known yet has its room already, so that nothing moves under the pointer when it comes.
+    root.classList.toggle("unknown", root.hidden);
+    root.hidden = false;
     this.asking = false;
     for (const change of ["crop", "change"]) root.closest("form").addEventListener(change, () => this.follow());
     this.follow();
@@ -35,7 +38,7 @@ class Meter {
       try {
         const answer = await fetch(address);
         if (answer.ok) this.show(await answer.json());
-        else this.root.hidden = true; // such as a crop that holds transparent pixels: the form says so when it is sent
+        else this.root.classList.add("unknown"); // such as a crop that holds transparent pixels: the form says so when it is sent
       } catch {
         break; // offline: the next move of the crop asks again
       }
@@ -49,7 +52,7 @@ class Meter {
     this.bar.querySelector(".meter-value").setAttribute("width", 100 * place);
     this.root.querySelector(".meter-number").textContent = shown.toFixed(2);
     this.root.dataset.verdict = verdict;
-    this.root.hidden = false;
+    this.root.classList.remove("unknown");
     const sentence = this.root.querySelector(".structure-words");
     if (sentence.textContent !== words) sentence.textContent = words;
   }
