@@ -9,7 +9,7 @@ from app.images.convert import GROUND
 LONGEST = 720  # pixels of the block, slanted sides and all
 MARGIN = 16
 DEPTH = 0.5  # of the slanted sides, as in cabinet projection: drawn in full they look too long
-STEEPEST, MOST_STRETCHED = 0.75, 4  # a short film is stretched, to this height for a width of 1 where so much suffices
+HEIGHT, MOST_STRETCHED = 0.75, 4  # a short film is stretched in time to this part of its width, so often at most
 FRONT, SIDE = 0.86, 0.7  # brightness of the two walls; the top has the film's own
 
 
@@ -57,7 +57,7 @@ class VideoCube:
     @staticmethod
     def _sides(width: int, height: int, layers: int) -> tuple[int, int, int]:
         """Width and height of the front, and by how much the slanted edges rise, which is as far as they go right."""
-        stretched = layers * min(MOST_STRETCHED, max(1, int(STEEPEST * width / layers)))
+        stretched = layers * min(MOST_STRETCHED, max(1, int(HEIGHT * width / layers)))
         rise = DEPTH * height
         scale = min(1.0, LONGEST / (max(width, stretched) + rise))
         across, back, up = (max(1, round(side * scale)) for side in (width, rise, stretched))
