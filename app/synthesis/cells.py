@@ -140,28 +140,36 @@ class Cells:
         list of Part
             The sum of their weights is at least 1 at every pixel, as is the sum of the squares.
         """
-        middle = len(self._table) // 2
+        reaching = self.reaching(window, among)
         largest = np.full((window.bottom - window.top, window.right - window.left), -inf, np.float32)
-        found = []
-        for index in self.reaching(window, among).tolist():
-            (y, x), (top, bottom, left, right) = self.centres[index].tolist(), self.boxes[index].tolist()
-            top, bottom = max(top, window.top), min(bottom, window.bottom)
-            left, right = max(left, window.left), min(right, window.right)
-            rows, columns = slice(top - window.top, bottom - window.top), slice(left - window.left, right - window.left)
-            logs = self._table[middle + top - y : middle + bottom - y, middle + left - x : middle + right - x]
+        # The largest weight is the nearest centre's, and its core holds all that it is nearest to.
+        cores = self.cores[self.cell[reaching]] + np.repeat(self.centres[reaching], 2, axis=1)
+        for index, core in zip(reaching.tolist(), cores.tolist(), strict=True):
+            rows, columns, logs = self._logs(index, core, window)
             np.maximum(largest[rows, columns], logs, out=largest[rows, columns])
-            found.append(Part(index, rows, columns, logs, (window.top - y, window.left - x)))
+        least = largest + LOG_LEFT_OUT
         parts = []
-        for part in found:
-            weight = part.weight - largest[part.rows, part.columns]
-            kept = weight > LOG_LEFT_OUT
+        for index, box in zip(reaching.tolist(), self.boxes[reaching].tolist(), strict=True):
+            rows, columns, logs = self._logs(index, box, window)
+            kept = logs > least[rows, columns]
             down, across = np.flatnonzero(kept.any(axis=1)).tolist(), np.flatnonzero(kept.any(axis=0)).tolist()
             if down:
-                weight = np.exp(weight[down[0] : down[-1] + 1, across[0] : across[-1] + 1])
-                top, left = part.rows.start + down[0], part.columns.start + across[0]
-                there = slice(top, top + weight.shape[0]), slice(left, left + weight.shape[1])
-                parts.append(Part(part.centre, *there, weight, part.source))
+                logs = logs[down[0] : down[-1] + 1, across[0] : across[-1] + 1]
+                top, left = rows.start + down[0], columns.start + across[0]
+                there = slice(top, top + logs.shape[0]), slice(left, left + logs.shape[1])
+                weight = logs - largest[there]
+                y, x = self.centres[index].tolist()
+                parts.append(Part(index, *there, np.exp(weight, out=weight), (window.top - y, window.left - x)))
         return parts
+
+    def _logs(self, index: int, box: list[int], window: Window) -> tuple[slice, slice, Real]:
+        """Where in a window a box lies, and the logarithms of a centre's weights there."""
+        (y, x), (top, bottom, left, right) = self.centres[index].tolist(), box
+        top, bottom = max(top, window.top), max(window.top, min(bottom, window.bottom))
+        left, right = max(left, window.left), max(window.left, min(right, window.right))
+        middle = len(self._table) // 2
+        logs = self._table[middle + top - y : middle + bottom - y, middle + left - x : middle + right - x]
+        return slice(top - window.top, bottom - window.top), slice(left - window.left, right - window.left), logs
 
     def sources(self, height: int, width: int, seed: int) -> Ints:
         """A source for every cell: places q_i of a sample, drawn so that the cell's blend zone lies inside it.
