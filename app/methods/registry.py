@@ -15,6 +15,7 @@ from app.methods.texton import TEXTON
 from app.methods.transfer import TRANSFER
 from app.methods.video_patchwork import VIDEO_PATCHWORK
 from app.methods.video_rpn import VIDEO_RPN
+from app.methods.video_transfer import VIDEO_TRANSFER
 
 METHODS: dict[str, Method] = {
     "rpn": RPN,
@@ -30,6 +31,7 @@ METHODS: dict[str, Method] = {
     "transfer": TRANSFER,
     "video-rpn": VIDEO_RPN,
     "video-patchwork": VIDEO_PATCHWORK,
+    "video-transfer": VIDEO_TRANSFER,
 }
 
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from app.errors import InvalidInputError
 from app.images.png import encode_png
 from app.images.video.cube import VideoCube
-from app.methods.films import texture_film
+from app.methods.films import film_memory, texture_film
 from app.methods.model import Context, Picture, Size, Source
 from app.methods.pictures import encode
 from app.synthesis.cell_shapes import reach
@@ -19,7 +19,8 @@ from app.synthesis.video_patchwork import in_order
 Real = NDArray[np.float32]
 Painter = Callable[[Window], Callable[[int], Real]]  # of a window, then of a frame
 
-HELD = 8  # frames at a time, float32, with what is on the way to the encoders
+IN_TIME = 3  # stream of random numbers; those before lay out the cells and draw or match their sources
+HELD = 8  # frames at a time, in single precision: as many as threads are likely, and what each works with
 
 
 def refuse_short(size: Size, frames: int, interval: int, longest: int) -> None:
@@ -114,4 +115,10 @@ def patchwork_bytes(size: Size, height: int, width: int, grid: int, sharpness: f
     margins = replace(size, width=size.width + 2 * r, height=size.height + 2 * r)
     average = film_bytes(replace(margins, frames=1))
     weights = 4 * round((2 * r / grid) ** 2 * height * width)
-    return film_bytes(size) + film_bytes(margins) + 16 * average + weights + HELD * 4 * size.channels * height * width
+    held = film_bytes(size) + film_bytes(margins) + 16 * average + weights
+    return held + frames_bytes(size, height, width)
+
+
+def frames_bytes(size: Size, height: int, width: int) -> int:
+    """Bytes of what is held of frames of this size, with the channels of the clip, while they are made and encoded."""
+    return HELD * 4 * size.channels * height * width + film_memory(width, height, size.channels)

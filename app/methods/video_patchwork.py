@@ -15,12 +15,13 @@ from app.methods.options import ADVANCED
 from app.methods.patches import LEAST_GRID, refuse_small
 from app.methods.references import PATCHWORK
 from app.methods.video_patches import (
-    HELD,
+    IN_TIME,
     Painter,
     Real,
     average_picture,
     cells_cube,
     film_bytes,
+    frames_bytes,
     patchwork_bytes,
     refuse_short,
     textured,
@@ -28,10 +29,8 @@ from app.methods.video_patches import (
 from app.synthesis.cells import jittered_cells, least_sample, random
 from app.synthesis.transitions import Transitions, longest_interval
 from app.synthesis.video_cells import FixedCells, source_colours
-from app.synthesis.video_mosaic import Mosaic, needed
+from app.synthesis.video_mosaic import Mosaic, held_bytes, needed
 from app.synthesis.video_patchwork import Clip, VideoPatchwork
-
-IN_TIME = 3  # stream of random numbers; those before lay out the cells and draw or match their sources
 
 
 class VideoPatchworkParams(SeamlessParams):
@@ -87,7 +86,7 @@ def memory(sizes: Sequence[Size], params: VideoPatchworkParams) -> int:
     size, (_, height, width) = sizes[0], _shape(sizes[0], params)
     if params.arrangement == "fixed":
         return patchwork_bytes(size, height, width, params.grid, params.sharpness)
-    return 2 * film_bytes(size) + HELD * 4 * size.channels * height * width
+    return 2 * film_bytes(size) + held_bytes(height, width) + frames_bytes(size, height, width)
 
 
 def run(sources: Sequence[Source], params: VideoPatchworkParams, context: Context) -> Iterator[Picture]:
@@ -218,9 +217,9 @@ EXPLANATION = Explanation(
             "Clouds drift through the crop as one. In the texture every patch drifts by itself, and its borders stand "
             "still: with smaller patches more of them.",
             (
-                Exhibit("video-patchwork", SKY, {"seed": 2}, ("texture", "cube"), "Grid 64"),
-                Exhibit("video-patchwork", SKY, {"seed": 2, "grid": 24}, ("texture", "cube"), "Grid 24"),
-                Exhibit("video-rpn", SKY, {"seed": 2}, ("texture", "cube"), "Video RPN"),
+                Exhibit("video-patchwork", SKY, {"seed": 2}, ("cube",), "Grid 64"),
+                Exhibit("video-patchwork", SKY, {"seed": 2, "grid": 24}, ("cube",), "Grid 24"),
+                Exhibit("video-rpn", SKY, {"seed": 2}, ("cube",), "Video RPN"),
             ),
         ),
     ),

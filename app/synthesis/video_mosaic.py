@@ -47,6 +47,11 @@ def needed(length: int, spacing: int) -> int:
     return min(2 * int(REACH * spacing) + 1, length)
 
 
+def held_bytes(height: int, width: int, threads: int = 4) -> int:
+    """Bytes of the distances that so many threads hold, for frames of this size."""
+    return 4 * round((2 * REACH) ** 3) * threads * min(height, TILE) * min(width, TILE)
+
+
 class Mosaic:
     """A three-dimensional patchwork, of which any frame can be computed.
 

@@ -1,0 +1,227 @@
+"""`video-transfer`: a picture rendered in the patches of a clip."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from app.methods.explanation import Exhibit, Explanation, Figure, Formula
+from app.methods.films import crop_film
+from app.methods.matching import refuse_long_search, refuse_other_size, search_bytes
+from app.methods.model import Context, LoopParams, Method, Picture, Size, Slot, Source
+from app.methods.options import ADVANCED
+from app.methods.patches import LEAST_GRID, refuse_small
+from app.methods.pictures import encode, refuse_infinite
+from app.methods.references import PATCHWORK
+from app.methods.video_patches import (
+    IN_TIME,
+    Real,
+    average_picture,
+    cells_cube,
+    patchwork_bytes,
+    refuse_short,
+    textured,
+)
+from app.synthesis.cell_match import match_cells
+from app.synthesis.cells import Cells, jittered_cells, least_sample, random
+from app.synthesis.luminance import luminance
+from app.synthesis.team import Team
+from app.synthesis.transfer import rescaled
+from app.synthesis.transitions import Transitions, longest_interval
+from app.synthesis.video_cells import FixedCells
+from app.synthesis.video_patchwork import Clip, VideoPatchwork
+from app.synthesis.work import Work
+
+PEAK = 255  # of a clip's values
+
+
+class VideoTransferParams(LoopParams):
+    """Parameters of the video transfer."""
+
+    grid: int = Field(
+        16,
+        ge=LEAST_GRID,
+        le=1024,
+        title="Grid",
+        description="Pixels from one patch to the next, about. Smaller patches follow the pattern more closely, larger "
+        "ones keep more of the clip's texture.",
+    )
+    interval: int = Field(
+        18,
+        ge=1,
+        le=600,
+        title="Interval",
+        description="Frames from one transition in time to the next, about. Longer ones keep longer movements; the "
+        "clip must hold what is seen around a transition, about 2½ intervals.",
+    )
+    candidates: int = Field(
+        200,
+        ge=0,
+        le=100_000,
+        title="Candidates",
+        description="Among how many places of the clip, drawn at random, the one that is most like the pattern is "
+        "taken for each patch; 0: among all. More follow the pattern more closely and repeat places more often.",
+    )
+    sharpness: float = Field(
+        2,
+        ge=1,
+        le=40,
+        title="Sharpness f",
+        description="How suddenly a patch gives way to its neighbour: the higher, the more suddenly.",
+        json_schema_extra=ADVANCED,
+    )
+
+
+def check(sizes: Sequence[Size], params: VideoTransferParams) -> None:
+    """Refuse a size that is not the pattern's, and a clip that does not hold the patches."""
+    clip, pattern = sizes
+    refuse_other_size(pattern, params)
+    frames, height, width = _shape(sizes, params)
+    refuse_small(clip, params.grid, lambda grid: (least_sample(height, width, grid, params.sharpness),) * 2)
+    refuse_short(clip, frames, params.interval, longest_interval(clip.frames, frames, params.loop))
+    refuse_long_search(clip, pattern, params.grid, params.candidates)
+
+
+def memory(sizes: Sequence[Size], params: VideoTransferParams) -> int:
+    """That of the video patchwork, and the search."""
+    clip, pattern = sizes
+    held = patchwork_bytes(clip, pattern.height, pattern.width, params.grid, params.sharpness)
+    return held + search_bytes(replace(clip, frames=1), pattern)
+
+
+def run(sources: Sequence[Source], params: VideoTransferParams, context: Context) -> Iterator[Picture]:
+    """The pattern as a video texture, its cells over time, the average image, the clip and the pattern."""
+    clip, pattern = sources
+    sizes = [source.size for source in sources]
+    check(sizes, params)
+    refuse_infinite(sources)
+    assert clip.film is not None
+    film, shape = clip.film.frames, _shape(sizes, params)
+    context.progress("cells", 0)
+    cells = jittered_cells(*shape[1:], grid=params.grid, sharpness=params.sharpness, tileable=False, seed=params.seed)
+    places = _matched(film, pattern, cells, params, replace(context, progress=context.between(0, 0.2)))
+    transitions = Transitions(
+        cells.count, len(film), shape[0], params.interval, loop=params.loop, rng=random(params.seed, IN_TIME)
+    )
+    margin = cells.margin(places, *film.shape[1:3])
+    made = VideoPatchwork(Clip(film, margin), cells, places, transitions)
+    yield from textured(made.frame, shape, clip, replace(context, progress=context.between(0.2, 0.86)))
+    yield cells_cube(
+        lambda window: FixedCells(cells, window, places, transitions, film.shape[:3]).painted,
+        shape,
+        replace(context, progress=context.between(0.86, 0.9)),
+    )
+    yield average_picture(film, context)
+    yield from crop_film(clip, replace(context, progress=context.between(0.9, 1)))
+    yield encode("crop-2", "Pattern", pattern.pixels, pattern.peak, context)
+    context.progress("crop", 1)
+
+
+def _matched(
+    film: NDArray[np.uint8], pattern: Source, cells: Cells, params: VideoTransferParams, context: Context
+) -> NDArray[np.int64]:
+    """The place of the clip for every cell, found in the average image."""
+    average = film.mean(0, np.float32)
+    wanted = rescaled(_with_channels(pattern.pixels, average.shape[2]), average)
+    with Team(context.threads) as team:
+        matches = match_cells(
+            average,
+            wanted,
+            cells,
+            peak=PEAK,
+            candidates=params.candidates,
+            seed=params.seed,
+            work=Work(team, context.progress),
+        )
+    return matches.places
+
+
+def _with_channels(pixels: Real, channels: int) -> Real:
+    """A pattern in grey for a clip in grey, and with equal channels for one in colour."""
+    if pixels.shape[2] == channels:
+        return pixels
+    return luminance(pixels)[:, :, None] if channels == 1 else np.repeat(pixels, channels, axis=2)
+
+
+def _shape(sizes: Sequence[Size], params: VideoTransferParams) -> tuple[int, int, int]:
+    return params.frames or sizes[0].frames, sizes[1].height, sizes[1].width
+
+
+SCENE = ("scene_china", "100,40,480,360")
+SMOKE, SKY, SAND = ((name, "0,0,320,320") for name in ("advected_noise", "sky_pan", "sand_under_water"))
+SHOWN = ("crop-2", "average", "cube")
+
+EXPLANATION = Explanation(
+    what=(
+        "A picture, the pattern, is rendered in the texture of a clip, and moves as the clip does. The pattern is "
+        "first given the mean colour and the range of the clip's average image. Then, as in transfer, every patch "
+        "is taken from the place of the average image that is most like the pattern there, among a few places drawn at "
+        "random.",
+        "From there on it is the video patchwork: every patch shows the clip at its place, with transitions in time of "
+        "its own, and joins its neighbours. The mean is now a local one, that of each patch in the average image.",
+    ),
+    formulas=(
+        Formula(
+            r"q_i = \operatorname*{argmin}_{q \in Q_i} \sum_{x \in V_i} \left| P(x) - A(x - p_i + q) \right|^2",
+            r"The source of cell $V_i$: among a random set $Q_i$ of places of the average image $A$ the one where the "
+            r"sum of squared differences from the pattern $P$ is least.",
+        ),
+        Formula(
+            r"O(x, t) = \frac{\sum_i (N_i(x - p_i + q_i, t) - a_i)\, w_i(x)}{\sqrt{\sum_i w_i(x)^2}} + "
+            r"\frac{\sum_i a_i w_i(x)}{\sum_i w_i(x)}",
+            r"Every frame is a transfer of the sequences' frames $N_i$ (see video patchwork): what differs from the "
+            r"patches' means $a_i$ keeps its deviation, and the means pass over smoothly.",
+        ),
+    ),
+    fails=(
+        "Only what the average image shows can follow the pattern. A clip whose average is even, because everything in "
+        "it moves, has no light and dark places to draw with.",
+        "Patches that were chosen for being alike are not independent, and where they join contrast may rise. Large "
+        "patches show little of the pattern, small ones little of the texture.",
+    ),
+    figures=(
+        Figure(
+            "A scene in smoke and in clouds",
+            "The pattern, the clip's average image, in which its light and dark places are looked for, and the video, "
+            "whose first and last frames meet. All places of the average image are compared.",
+            (
+                Exhibit("video-transfer", (SMOKE, SCENE), {"seed": 1, "candidates": 0}, SHOWN, "Advected noise"),
+                Exhibit("video-transfer", (SKY, SCENE), {"seed": 1, "candidates": 0}, SHOWN, "Clouds"),
+            ),
+        ),
+        Figure(
+            "Fewer candidates",
+            "Among 20 places drawn at random there is seldom a good one, among 200 mostly: the fewer, the more varied, "
+            "and the harder to recognise.",
+            (
+                Exhibit("video-transfer", (SMOKE, SCENE), {"seed": 1, "candidates": 20}, ("cube", "cells"), "20"),
+                Exhibit("video-transfer", (SMOKE, SCENE), {"seed": 1}, ("cube", "cells"), "200"),
+            ),
+        ),
+        Figure(
+            "An average without contrast",
+            "The light on the sand wanders everywhere, and its average is an even grey: nothing of the scene is left.",
+            (Exhibit("video-transfer", (SAND, SCENE), {"seed": 1, "candidates": 0}, SHOWN),),
+        ),
+    ),
+)
+
+VIDEO_TRANSFER = Method(
+    name="video-transfer",
+    title="Video transfer",
+    summary="Renders a picture in the patches of a clip whose average is most like it, moving as the clip does.",
+    inputs=(
+        Slot("clip", "Clip", "The video whose texture is used.", moving=True),
+        Slot("pattern", "Pattern", "The picture that is rendered."),
+    ),
+    params=VideoTransferParams,
+    references=(PATCHWORK,),
+    explanation=EXPLANATION,
+    check=check,
+    run=run,
+    size=lambda sizes: (sizes[1].width, sizes[1].height),
+    toroidal=lambda params: False,
+    memory=memory,
+)
