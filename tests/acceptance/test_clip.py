@@ -252,27 +252,6 @@ def test_a_photograph_is_told_from_a_clip_before_anything_is_sent(
     expect(page.locator(f"#method-{MOVING}")).to_be_checked()
 
 
-def test_what_is_wrong_is_said_while_the_form_is_filled_in(visitors: Any, uploaded: str) -> None:
-    """At the button and at the field, until it is right again; sending is not hindered."""
-    visitors.refusals_expected = True
-    page = visitors.visit(uploaded)
-    page.fill("#frames", "99999")
-    expect(page.locator("#run-problem")).to_contain_text("fewer frames")
-    page.fill("#frames", "1")
-    expect(page.locator("#frames-error")).to_contain_text("from 2 on")
-    expect(page.locator("#frames")).to_have_attribute("aria-invalid", "true")
-    expect(page.locator("#frames")).to_have_attribute("aria-describedby", "frames-help frames-error")
-    page.fill("#frames", "12")
-    expect(page.locator("#run-problem")).to_be_hidden()
-    expect(page.locator("#frames-error")).to_be_hidden()
-    assert page.locator("[aria-invalid]").count() == 0
-    page.fill("#frames", "99999")
-    page.get_by_role("button", name="Synthesise").click()
-    expect(page.locator(".summary")).to_contain_text("fewer frames")
-    page.fill("#frames", "12")
-    expect(page.locator(".summary")).to_have_count(0)
-
-
 def test_a_clip_as_another_input(visitors: Any, site: Any, uploaded: str) -> None:
     """It plays nowhere, for the method takes one frame of it, which is chosen on its own reel."""
     name = uploaded.rsplit("/", 1)[-1]
