@@ -6,7 +6,7 @@ from app.synthesis.cell_match import HALF
 
 MOST_WORK = 10**11  # products: a few minutes on two processors
 PRODUCTS_OF_A_PLACE = 16  # that comparing a patch with one of all places takes time for
-SEARCHED_TEXTURE, SEARCHED_PATTERN = (16, 40), (16, 8)  # bytes for each value and for each pixel of them
+SEARCHED_TEXTURE, SEARCHED_PATTERN = (8, 24), (16, 0)  # bytes for each value and for each pixel of them
 
 
 def refuse_other_size(pattern: Size, params: StillParams) -> None:

@@ -22,7 +22,7 @@ from app.synthesis.team import Team
 from app.synthesis.transfer import rescaled, transfer
 from app.synthesis.work import Work
 
-BYTES_OF_TEXTURE, BYTES_OF_PATTERN = 12, 24  # for each value, beside the search
+BYTES_OF_TEXTURE, BYTES_OF_PATTERN = 4, 8  # for each value, beside the search
 BYTES_OF_CELL = 1000
 
 
