@@ -27,6 +27,19 @@ Ints = NDArray[np.int64]
 Real = NDArray[np.float32]
 
 
+def log_weight(d: NDArray[np.float64], sharpness: float) -> NDArray[np.float64]:
+    """log(d^(−f) − R^(−f)) of distances in spacings, −∞ from R on.
+
+    Examples
+    --------
+    >>> np.exp(log_weight(np.array([0.5, 3.0]), 2)).round(6).tolist()
+    [3.888889, 0.0]
+    """
+    with np.errstate(divide="ignore"):
+        shoulder = np.log1p(-(np.minimum(d / REACH, 1) ** sharpness))
+    return shoulder - sharpness * np.log(d)
+
+
 @dataclass(frozen=True)
 class Axis:
     """Squares of the grid along one axis: ``count`` in the plane, ``beyond`` more before it and as many behind it.

@@ -10,7 +10,7 @@ f over- or underflows, and at a centre the cell alone is left.
 
 With R = 3 the shoulder takes less from the weights than an 8-bit value shows where f ≥ 6. A sum of d^(−f) over the
 plane converges too slowly for smaller f to be cut unseen by any R that keeps the work linear (for f ≤ 1 it does not
-converge even when squared): there the shoulder is part of the model, and makes the edges end after a few spacings.
+converge even when squared): there the shoulder is part of the model.
 
 References
 ----------
@@ -26,7 +26,7 @@ import numpy as np
 from numpy.random import SFC64, Generator, SeedSequence
 from numpy.typing import NDArray
 
-from app.synthesis.cell_shapes import REACH, Axis, extents, reach
+from app.synthesis.cell_shapes import Axis, extents, log_weight, reach
 
 LEFT_OUT = 1 / 512  # of a pixel: a part that is smaller changes an 8-bit value by less than a half
 LOG_LEFT_OUT = np.float32(log(LEFT_OUT))
@@ -39,7 +39,7 @@ Real = NDArray[np.float32]
 
 
 class Window(NamedTuple):
-    """A rectangle of the plane: rows ``top`` to ``bottom`` − 1, columns ``left`` to ``right`` − 1."""
+    """Rows ``top`` to ``bottom`` − 1 and columns ``left`` to ``right`` − 1 of the plane."""
 
     top: int
     bottom: int
@@ -77,7 +77,7 @@ class Cells:
     unit : float
         The spacing in pixels, in which distances are measured.
     count : int
-        How many cells there are.
+        Of cells.
     centres : ndarray of int64, shape (N, 2)
         p_i as (y, x), N ≥ ``count``: centres outside the plane reach into it too.
     cell : ndarray of int64, shape (N,)
@@ -174,8 +174,7 @@ class Cells:
     def sources(self, height: int, width: int, seed: int) -> Ints:
         """A source for every cell: places q_i of a sample, drawn so that the cell's blend zone lies inside it.
 
-        The faint rest of a cell, less than 1/16 of a pixel, may reach over the sample's border, by less than
-        `margin` pixels.
+        The faint rest of a cell, less than 1/16 of a pixel, may reach over the border, by `margin` pixels at most.
 
         Parameters
         ----------
@@ -206,19 +205,6 @@ class Cells:
         first = self.boxes[:, ::2] + start
         last = self.boxes[:, 1::2] + start - (height, width)
         return max(0, int(-first.min()), int(last.max()))
-
-
-def log_weight(d: NDArray[np.float64], sharpness: float) -> NDArray[np.float64]:
-    """log(d^(−f) − R^(−f)) of distances in spacings, −∞ from R on.
-
-    Examples
-    --------
-    >>> np.exp(log_weight(np.array([0.5, 3.0]), 2)).round(6).tolist()
-    [3.888889, 0.0]
-    """
-    with np.errstate(divide="ignore"):
-        shoulder = np.log1p(-(np.minimum(d / REACH, 1) ** sharpness))
-    return shoulder - sharpness * np.log(d)
 
 
 def least_sample(height: int, width: int, grid: int, sharpness: float) -> int:

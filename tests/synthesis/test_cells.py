@@ -3,14 +3,13 @@
 import numpy as np
 import pytest
 
+from app.synthesis.cell_shapes import REACH, log_weight
 from app.synthesis.cells import (
     BLEND,
     LEFT_OUT,
-    REACH,
     Window,
     jittered_cells,
     least_sample,
-    log_weight,
 )
 
 

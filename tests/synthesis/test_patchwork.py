@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from app.synthesis.cells import REACH, jittered_cells
+from app.synthesis.cell_shapes import REACH
+from app.synthesis.cells import jittered_cells
 from app.synthesis.patchwork import Patchwork, painted, patchwork
 from tests.synthesis.images import image
 from tests.synthesis.stopping import stops_at
