@@ -156,7 +156,10 @@ def test_a_file_that_is_no_whole_photograph_is_refused(tmp_path: Path, content: 
 def test_a_photograph_alone_is_not_enough_and_is_left_alone() -> None:
     before = CHINA.read_bytes()
     done = synthesize(CHINA, "--overwrite")
-    assert (done.exit_code, done.stderr) == (2, "microtexture: Name a photograph, or a clip, and then the file to write.\n")
+    assert (done.exit_code, done.stderr) == (
+        2,
+        "microtexture: Name a photograph, or a clip, and then the file to write.\n",
+    )
     assert CHINA.read_bytes() == before
 
 
