@@ -153,16 +153,20 @@ def visitors(browser: Browser, site: Site) -> Iterator[Visitors]:
 
 
 def shown_pixels(page: Page, selector: str) -> np.ndarray:
-    """The pixels (H, W, 3) uint8 of a picture as the browser decoded it."""
+    """The pixels (H, W, 3) uint8 of a picture, film or canvas as the browser shows it."""
     page.wait_for_function(
-        "selector => { const i = document.querySelector(selector); return i && i.complete && i.naturalWidth > 0; }",
+        """selector => {
+            const shown = document.querySelector(selector);
+            return shown && (shown.naturalWidth ?? (shown.readyState ?? 4) - 1) > 0; // 2: a video has its picture
+        }""",
         arg=selector,
     )
     address = page.evaluate(
         """selector => {
-            const image = document.querySelector(selector);
-            const canvas = new OffscreenCanvas(image.naturalWidth, image.naturalHeight);
-            canvas.getContext("2d").drawImage(image, 0, 0);
+            const shown = document.querySelector(selector);
+            const width = shown.naturalWidth ?? shown.videoWidth ?? shown.width;
+            const canvas = new OffscreenCanvas(width, shown.naturalHeight ?? shown.videoHeight ?? shown.height);
+            canvas.getContext("2d").drawImage(shown, 0, 0);
             return canvas.convertToBlob({type: "image/png"}).then(blob => new Promise(done => {
                 const reader = new FileReader();
                 reader.onload = () => done(reader.result);

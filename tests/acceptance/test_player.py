@@ -1,6 +1,5 @@
 """Films on an experiment's page: Chromium plays both files, in step, frame by frame, tiled, and without a script."""
 
-import base64
 from collections.abc import Callable
 from io import BytesIO
 from pathlib import Path
@@ -81,29 +80,15 @@ def times(page: Page) -> list[float]:
     return [float(time) for time in page.evaluate(f"{VIDEOS}.map(video => video.currentTime * {RATE})")]
 
 
-def drawn(page: Page, selector: str) -> np.ndarray:
-    """The pixels (H, W, 3) of a video or canvas as the browser shows it."""
-    data = page.evaluate(
-        """selector => {
-            const shown = document.querySelector(selector), canvas = document.createElement("canvas");
-            [canvas.width, canvas.height] = [shown.videoWidth ?? shown.width, shown.videoHeight ?? shown.height];
-            canvas.getContext("2d").drawImage(shown, 0, 0);
-            return canvas.toDataURL("image/png");
-        }""",
-        selector,
-    )
-    return np.asarray(Image.open(BytesIO(base64.b64decode(data.partition(",")[2]))).convert("RGB"))
-
-
 Shows = Callable[[Page, str, np.ndarray], None]
 
 
 @pytest.fixture(scope="session")
-def shows(until: Callable[..., Any]) -> Shows:
+def shows(until: Callable[..., Any], shown_pixels: Callable[[Page, str], np.ndarray]) -> Shows:
     """Wait until a video or canvas has found a frame (H, W, 3)."""
 
     def wait(page: Page, selector: str, frame: np.ndarray) -> None:
-        until(lambda: difference(drawn(page, selector), frame) < NOISE, f"{selector} to show its frame")
+        until(lambda: difference(shown_pixels(page, selector), frame) < NOISE, f"{selector} to show its frame")
 
     return wait
 
