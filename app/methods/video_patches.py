@@ -2,9 +2,11 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 
 from app.errors import InvalidInputError
 from app.images.png import encode_png
@@ -20,6 +22,14 @@ Real = NDArray[np.float32]
 Painter = Callable[[Window], Callable[[int], Real]]  # of a window, then of a frame
 
 IN_TIME = 3  # stream of random numbers; those before lay out the cells and draw or match their sources
+INTERVAL: Any = Field(
+    18,
+    ge=1,
+    le=600,
+    title="Interval",
+    description="Frames from one transition in time to the next, about. Longer ones keep longer movements; the clip "
+    "must hold what is seen around a transition, about 2½ intervals.",
+)
 HELD = 8  # frames at a time, in single precision: as many as threads are likely, and what each works with
 
 

@@ -16,6 +16,7 @@ from app.methods.patches import LEAST_GRID, refuse_small
 from app.methods.references import PATCHWORK
 from app.methods.video_patches import (
     IN_TIME,
+    INTERVAL,
     Painter,
     Real,
     average_picture,
@@ -44,14 +45,7 @@ class VideoPatchworkParams(SeamlessParams):
         description="Pixels from one patch to the next, about. What is smaller than a patch is kept whole; the crop "
         "must hold a patch with its soft edges, at sharpness 6 about 3½ grids a side.",
     )
-    interval: int = Field(
-        18,
-        ge=1,
-        le=600,
-        title="Interval",
-        description="Frames from one transition in time to the next, about. Longer ones keep longer movements; the "
-        "clip must hold what is seen around a transition, about 2½ intervals.",
-    )
+    interval: int = INTERVAL
     arrangement: Literal["fixed", "mosaic"] = Field(
         "fixed",
         title="Arrangement",

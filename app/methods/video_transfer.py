@@ -17,6 +17,7 @@ from app.methods.pictures import encode, refuse_infinite
 from app.methods.references import PATCHWORK
 from app.methods.video_patches import (
     IN_TIME,
+    INTERVAL,
     Real,
     average_picture,
     cells_cube,
@@ -48,14 +49,7 @@ class VideoTransferParams(LoopParams):
         description="Pixels from one patch to the next, about. Smaller patches follow the pattern more closely, larger "
         "ones keep more of the clip's texture.",
     )
-    interval: int = Field(
-        18,
-        ge=1,
-        le=600,
-        title="Interval",
-        description="Frames from one transition in time to the next, about. Longer ones keep longer movements; the "
-        "clip must hold what is seen around a transition, about 2½ intervals.",
-    )
+    interval: int = INTERVAL
     candidates: int = Field(
         200,
         ge=0,

@@ -68,7 +68,7 @@ def address(experiment: Experiment) -> dict[str, str]:
     defaults = {entry.name: entry.default for entry in fields(used.params)}
     for name, value in experiment.parameters.items():
         said = ("on" if value else "") if isinstance(value, bool) else str(value)
-        if value is not None and not said == defaults[name] == "":
+        if value is not None and not said == defaults.get(name) == "":
             query[name] = said
     sizes = [Size(source.crop.width, source.crop.height, 3) for source in experiment.inputs]
     asked = (experiment.parameters.get("width"), experiment.parameters.get("height"))
