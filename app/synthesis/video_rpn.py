@@ -10,8 +10,8 @@ first is taken out as Moisan does it along one more axis, a frame counting as a 
     ŝ(ω, ξ) = Ĵ(ξ) (1 − exp(2πi k/T)) / (4 sin²(π k/T) + 4 sin²(π k₁/H) + 4 sin²(π k₂/W)),   ω = 2πk/T.
 
 That leaves k = 0, and with it the average frame and all that stands still, as it is. (In features of more than 50
-pixels of the three bundled clips the mean square difference between frames is 9.1, 3.2 and 1.0 times the clip's own
-with the jump, 0.9, 0.9 and 1.0 without; that of second differences 102, 49 and 1.1 against 1.2, 1.3 and 1.0.)
+pixels of the bundled sky and smoke the mean square difference between frames is 9.1 and 3.2 times the clip's own with
+the jump, 0.9 and 0.9 without; that of second differences 102 and 49 against 1.2 and 1.3.)
 
 A larger or longer film is made from the extended spot, see `app.synthesis.spot`; what does not change with time is kept
 out of the window along time, so that what stands still does so for as long.
