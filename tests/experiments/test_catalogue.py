@@ -6,15 +6,14 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable
-from datetime import UTC, datetime, timedelta
+from datetime import timedelta
 from pathlib import Path
 
 import pytest
-from PIL import Image
 
 from app.errors import DeletedError, ForbiddenError, NotFoundError
 from app.experiments import catalogue
-from app.experiments.model import Sample, Status
+from app.experiments.model import Status
 from app.experiments.service import Service
 from app.experiments.submission import Allowed, NewExperiment, NewInput, prepare
 from app.gallery.exhibits import exhibits
@@ -23,12 +22,15 @@ from app.gallery.identity import identifier
 from app.images.crop import Rectangle
 from app.methods.explanation import Exhibit
 from app.methods.registry import METHODS
-from app.samples import bundled
 from app.settings import ROOT, Settings
+from tests.bundled_samples import sample_of
 
 SAMPLES = ROOT / "samples"
 DRAWN = ("two_sinusoids", "lit_plaster")
-MOST_PIXELS = 640 * 512  # of a crop and of a texture: all exhibits together are made in a minute or two
+MOST_PIXELS, MOST_FILM_PIXELS = (
+    640 * 512,
+    640 * 512 * 72,
+)  # of a crop and of a texture: all exhibits together are made in a minute or two
 WAVES = Exhibit("rpn", (("two_sinusoids", "0,0,64,64"),), {"seed": 1})
 PLASTER = Exhibit("adsn", (("lit_plaster", "0,0,64,48"),), {"seed": 2})
 
@@ -64,22 +66,15 @@ def filled(service: Service, two: None) -> Service:
     return service
 
 
-def _sample(sample_id: str) -> Sample:
-    entry = next(entry for entry in bundled(SAMPLES) if entry.id == sample_id)
-    with Image.open(entry.path) as picture:
-        channels = 1 if picture.mode == "L" else 3
-        return Sample(sample_id, "", *picture.size, channels, 8, False, datetime.now(UTC))
-
-
 @pytest.mark.parametrize("exhibit", exhibits().values(), ids=exhibits().keys())
 def test_every_exhibit_is_a_small_experiment_that_can_run(exhibit: Exhibit) -> None:
     inputs = tuple(NewInput(sample, Rectangle.parse(crop)) for sample, crop in exhibit.inputs)
     experiment = prepare(
         NewExperiment(exhibit.method, inputs, exhibit.parameters),
         catalogue.OWNER,
-        sample=_sample,
+        sample=sample_of,
         transparent=lambda sample, crop, frames: False,
-        allowed=Allowed(MOST_PIXELS, MOST_PIXELS, 1 << 31),
+        allowed=Allowed(MOST_PIXELS, MOST_FILM_PIXELS, 1 << 31),
     )
     assert max(source.crop.width * source.crop.height for source in experiment.inputs) <= MOST_PIXELS
 

@@ -1,10 +1,8 @@
 """What every method of the registry promises, whatever it computes."""
 
 import io
-from datetime import UTC, datetime
 from itertools import pairwise
 
-import av
 import numpy as np
 import pytest
 from imagecodecs import png_decode
@@ -12,13 +10,13 @@ from latex2mathml.converter import convert
 from PIL import Image
 
 from app.errors import CancelledError, InvalidInputError
-from app.experiments.model import Sample
 from app.experiments.submission import Allowed, NewExperiment, NewInput, prepare
 from app.images.crop import Rectangle
 from app.methods.model import Method, Source, StillParams
 from app.methods.registry import METHODS
 from app.samples import bundled
 from app.settings import ROOT
+from tests.bundled_samples import sample_of
 from tests.methods.runs import run, sources_for
 
 WITHOUT_CHANCE = {"modulus-phase"}  # nothing is drawn: the seed changes nothing
@@ -63,23 +61,12 @@ def test_every_figure_is_an_experiment_on_bundled_samples_that_shows_its_outputs
             prepared = prepare(
                 request,
                 "",
-                sample=_sample,
+                sample=sample_of,
                 transparent=lambda sample, crop, frames: False,
                 allowed=Allowed(1 << 20, 1 << 24, 1 << 30),
             )
             assert prepared.method == exhibit.method
             assert exhibit.show
-
-
-def _sample(sample_id: str) -> Sample:
-    entry = next(entry for entry in bundled(ROOT / "samples") if entry.id == sample_id)
-    if entry.kind == "moving":
-        with av.open(entry.path) as container:
-            film = container.streams.video[0]
-            return Sample(sample_id, "", film.width, film.height, 3, 8, False, datetime.now(UTC), film.frames)
-    with Image.open(entry.path) as picture:
-        channels = 1 if picture.mode in ("L", "I;16") else 3
-        return Sample(sample_id, "", *picture.size, channels, 8, False, datetime.now(UTC))
 
 
 @EVERY_STILL

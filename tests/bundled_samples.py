@@ -1,0 +1,25 @@
+"""Records of the bundled samples, without a service that takes them in."""
+
+from datetime import UTC, datetime
+
+import av
+from PIL import Image
+
+from app.experiments.model import Sample
+from app.samples import bundled
+from app.settings import ROOT
+
+
+def sample_of(sample_id: str) -> Sample:
+    """What the store would know of a bundled photograph or clip."""
+    entry = next(entry for entry in bundled(ROOT / "samples") if entry.id == sample_id)
+    if entry.kind == "moving":
+        with av.open(entry.path) as container:
+            film = container.streams.video[0]
+            rate = float(film.average_rate or 0)
+            return Sample(
+                sample_id, "", film.width, film.height, 3, 8, False, datetime.now(UTC), film.frames, rate=rate
+            )
+    with Image.open(entry.path) as picture:
+        channels = 1 if picture.mode in ("L", "I;16") else 3
+        return Sample(sample_id, "", *picture.size, channels, 8, False, datetime.now(UTC))
