@@ -14,10 +14,13 @@ from PIL import Image
 from typer.testing import CliRunner, Result
 
 from app.cli.commands import application
+from app.images.video.reader import read_film
 from app.methods.registry import METHODS
 from app.settings import ROOT
+from tests.methods.runs import SMALL
 
 SAND = ROOT / "samples" / "sand_desert009.png"
+WATER = ROOT / "samples" / "sand_under_water.mp4"
 CHINA = ROOT / "samples" / "scene_china.jpg"
 
 
@@ -171,12 +174,15 @@ def test_more_photographs_than_the_method_takes_are_refused(tmp_path: Path) -> N
 
 @pytest.mark.parametrize("name", METHODS)
 def test_every_method_runs(tmp_path: Path, name: str) -> None:
-    out = tmp_path / "out.png"
-    photos = [SAND, CHINA][: len(METHODS[name].inputs)]
-    crops = [word for _ in photos for word in ("--crop", "20,10,48,40")]
-    done = synthesize(*photos, out, "--method", name, *crops, "--seed", "3")
+    method = METHODS[name]
+    out = tmp_path / ("out.webm" if method.moving else "out.png")
+    files = [WATER if slot.moving else still for slot, still in zip(method.inputs, (SAND, CHINA), strict=False)]
+    crops = [word for _ in files for word in ("--crop", "20,10,64,48")]
+    small = [f"--{parameter}={value}" for parameter, value in SMALL.get(name, {}).items()]
+    times = ["--time", "3,12"] if method.moving else []
+    done = synthesize(*files, out, "--method", name, *crops, *times, *small, "--seed", "3")
     assert done.exit_code == 0, done.output
-    assert pixels(out).shape == (40, 48, 3)
+    assert (next(read_film(out)) if method.moving else pixels(out)).shape == (48, 64, 3)
 
 
 def test_several_photographs_are_taken_in_their_order_each_with_its_crop(tmp_path: Path) -> None:

@@ -84,34 +84,41 @@ def command() -> Callable[..., None]:
 
     synthesize.__signature__ = inspect.Signature(  # type: ignore[attr-defined]
         [_parameter(name, *declared) for name, declared in _OWN.items()]
-        + [_option(*found) for found in _found().values()]
+        + [_option(name, variants) for name, variants in _found().items()]
     )
     return synthesize
 
 
-def _found() -> dict[str, tuple[FormField, list[str]]]:
-    """Every parameter of the registry by name, and the methods that have it."""
-    found: dict[str, tuple[FormField, list[str]]] = {}
+def _found() -> dict[str, dict[FormField, list[str]]]:
+    """Every parameter of the registry by name: how it is declared, and the methods that declare it so."""
+    found: dict[str, dict[FormField, list[str]]] = {}
     for method in METHODS.values():
         for field in fields(method.params):
-            found.setdefault(field.name, (field, []))[1].append(method.name)
+            found.setdefault(field.name, {}).setdefault(field, []).append(method.name)
     return found
 
 
-def _option(field: FormField, owners: list[str]) -> inspect.Parameter:
-    name = field.name.replace("_", "-")
+def _option(parameter: str, variants: dict[FormField, list[str]]) -> inspect.Parameter:
+    name = parameter.replace("_", "-")
+    owners = [owner for names in variants.values() for owner in names]
     heading = None if len(owners) == len(METHODS) else f"Options of {', '.join(owners)}"
-    help_text = field.help
+    help_text = " ".join(
+        _help(field) if len(variants) == 1 else f"For {', '.join(names)}: {_help(field)}"
+        for field, names in variants.items()
+    )
+    field = next(iter(variants))
     if field.kind == "switch":
-        help_text = f"{help_text} [default: {field.default or 'off'}]"
         declared = typer.Option(f"--{name}/--no-{name}", help=help_text, rich_help_panel=heading)
-        return _parameter(field.name, bool | None, declared, None)
+        return _parameter(parameter, bool | None, declared, None)
     metavar = "|".join(field.choices) or {"integer": "N", "number": "X"}.get(field.kind, "TEXT")
-    if field.default:
-        help_text = f"{help_text} [default: {field.default}]"
     # Text here: the Params class validates it, with the same words as the API's.
     declared = typer.Option(f"--{name}", help=help_text, metavar=metavar, rich_help_panel=heading)
-    return _parameter(field.name, str | None, declared, None)
+    return _parameter(parameter, str | None, declared, None)
+
+
+def _help(field: FormField) -> str:
+    default = field.default or ("off" if field.kind == "switch" else "")
+    return f"{field.help} [default: {default}]" if default else field.help
 
 
 def _parameter(name: str, annotation: Any, declared: Any, default: Any) -> inspect.Parameter:

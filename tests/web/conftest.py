@@ -71,14 +71,16 @@ def picture_factory() -> Callable[..., bytes]:
 class Gate:
     """The worker's function; `closed` makes every job wait at its start, where it can be cancelled."""
 
+    held = 0.01  # the progress of a job that waits here
+
     def __init__(self) -> None:
         self._open = threading.Event()
         self._open.set()
 
     def __call__(self, settings: Settings, job: str, progress: Progress) -> None:
         while not self._open.wait(0.01):
-            progress("held", 0.0)
-        run_job(settings, job, progress)
+            progress("held", self.held)
+        run_job(settings, job, lambda stage, part: progress(stage, max(part, self.held)))  # never back
 
     @contextmanager
     def closed(self) -> Iterator[None]:

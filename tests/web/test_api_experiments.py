@@ -5,6 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 from app.methods.registry import METHODS
+from tests.methods.runs import SMALL
 
 
 def test_an_experiment_is_accepted_at_once(site):
@@ -54,7 +55,7 @@ def test_the_queue_tells_the_place(site, until):
         until(lambda: site.client.get(first).json()["status"] == "running")
         waiting = [site.run(wait=False).json()["url"] for _ in range(2)]
         assert [site.client.get(url).json()["position"] for url in waiting] == [1, 2]
-        until(lambda: site.client.get(first).json()["progress"] == 0.01)
+        until(lambda: site.client.get(first).json()["progress"] == site.gate.held)
         assert site.client.get(first).json()["stage"] == "held"
     until(lambda: site.client.get(waiting[-1]).json()["status"] == "succeeded")
 
@@ -211,25 +212,27 @@ def test_many_clients_at_once_are_all_served(site):
 
 
 @pytest.mark.parametrize("name", METHODS)
-def test_every_method_runs_on_a_bundled_sample(site, name):
+def test_every_method_runs(site, film, animation, name):
     """As an experiment, whose record is complete and whose texture can be fetched; and in one call, with its bytes."""
-    crop = {"x": 4, "y": 8, "width": 32, "height": 24}
-    source = {"sample": "gravel_gray", "crop": crop}
-    count = len(METHODS[name].inputs)
-    record = site.finished(method=name, inputs=[source] * count, parameters={"seed": 3})
+    method = METHODS[name]
+    photograph = site.client.get("/api/v1/samples/gravel_gray/image").content
+    files = [animation(film(12, 64, 64)) if slot.moving else photograph for slot in method.inputs]
+    crop = {"x": 4, "y": 8, "width": 56, "height": 48}
+    inputs = [{"sample": site.upload(data)["id"], "crop": crop} for data in files]
+    parameters = {**SMALL.get(name, {}), "seed": 3}
+    record = site.finished(method=name, inputs=inputs, parameters=parameters)
     names = [output["name"] for output in record["outputs"]]
     assert names[0] == "texture"
-    assert {"crop", *(f"crop-{number}" for number in range(2, count + 1))} <= set(names)
+    assert {"crop", *(f"crop-{number}" for number in range(2, len(files) + 1))} <= set(names)
     measured = record["diagnostics"]["structure"]
     kinds = [output["kind"] for output in record["outputs"]]
-    assert (len(measured["inputs"]), len(measured["outputs"])) == (count, kinds.count("texture"))
+    assert (len(measured["inputs"]), len(measured["outputs"])) == (len(files), kinds.count("texture"))
     texture = site.client.get(record["outputs"][0]["url"])
-    photograph = site.client.get("/api/v1/samples/gravel_gray/image").content
-    suffixes = ["", *(f"-{number}" for number in range(2, count + 1))]
+    suffixes = ["", *(f"-{number}" for number in range(2, len(files) + 1))]
     answer = site.client.post(
         "/api/v1/synthesize",
-        data={"method": name, "seed": "3", **{f"crop{suffix}": "4,8,32,24" for suffix in suffixes}},
-        files={f"file{suffix}": ("photograph.png", photograph) for suffix in suffixes},
+        data={"method": name, **parameters, **{f"crop{suffix}": "4,8,56,48" for suffix in suffixes}},
+        files={f"file{suffix}": (f"sample{suffix}", data) for suffix, data in zip(suffixes, files, strict=True)},
     )
     assert answer.status_code == 200, answer.text
     assert answer.content == texture.content
