@@ -8,6 +8,15 @@ from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Page, expect
 
 THEMES = ("light", "dark")
+ALIKE = {
+    "clip-frame",
+    "clip-lacking",
+    "mixture",
+    "convergence",
+    "slider",
+    "tiled",
+    "films-tiled",
+}  # no colours of their own
 PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True}
 RULES = {"runOnly": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]}
 
@@ -61,6 +70,8 @@ def test_axe_finds_no_violation_on_any_page(
     visitors.refusals_expected = True
     page = visitors.visit(color_scheme=theme)
     for name, address in pages.items():
+        if theme == "dark" and name in ALIKE:
+            continue
         page.goto(address)
         settle(page)
         assert_accessible(page)
