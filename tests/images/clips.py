@@ -4,7 +4,8 @@ import io
 import os
 import struct
 import zlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from fractions import Fraction
 from typing import Any
 
@@ -30,6 +31,17 @@ def moving(count: int = 6, height: int = 48, width: int = 64, *, seed: int = 0) 
     return np.stack([128 + 60 * wave + 50 * ramp for wave in waves], axis=-1).astype(np.uint8)
 
 
+@contextmanager
+def same_priority() -> Iterator[None]:
+    """Undo what SVT-AV1 does as root: it makes its caller a real-time thread, and so all that is started later."""
+    policy, parameters = os.sched_getscheduler(0), os.sched_getparam(0)
+    try:
+        yield
+    finally:
+        os.sched_setscheduler(0, policy, parameters)
+
+
+@same_priority()
 def video(
     film: Film,
     codec: Any = "libx264",
