@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 
 from app.errors import InvalidInputError, NotFoundError
 from app.experiments.model import Experiment, ExperimentInput, Sample
-from app.experiments.run import TEXTURES
 from app.experiments.submission import Allowed, NewExperiment, NewInput, prepare
 from app.images.convert import Format, convert
 from app.images.crop import Frames, Rectangle
@@ -80,7 +79,7 @@ def run(request: Request, settings: Settings, progress: Progress) -> str:
     with tempfile.TemporaryDirectory() as scratch:
         context = Context(depth, settings.threads, progress, Path(scratch))
         # The first pictures are the texture; the steps that the pages show after it are not computed.
-        pictures = list(islice(method.run(sources, params, context), TEXTURES if method.moving else 1))
+        pictures = list(islice(method.run(sources, params, context), method.textures))
         texture = _write(request.out, pictures)
     seconds = time.perf_counter() - started
     size = f"{texture.width} × {texture.height} pixels"
@@ -114,14 +113,7 @@ def _check_target(request: Request, method: Method) -> Literal[8, 16]:
 def _read(path: Path, settings: Settings) -> Decoded:
     if not path.is_file():
         raise NotFoundError(f"There is no file {path}.")
-    limits = Limits(
-        bytes=settings.max_upload_bytes,
-        pixels=settings.max_upload_pixels,
-        film_frames=settings.max_film_frames,
-        film_seconds=settings.max_film_seconds,
-        film_pixels=settings.max_film_pixels,
-    )
-    return decode(path, limits)
+    return decode(path, Limits.by(settings))
 
 
 def _experiment(request: Request, photos: Mapping[str, Decoded], settings: Settings) -> Experiment:

@@ -26,15 +26,7 @@ class SampleIntake:
         self._store = store
         self._blobs = blobs
         self._directory = settings.samples_dir
-        self._limits = Limits(
-            bytes=settings.max_upload_bytes,
-            pixels=settings.max_upload_pixels,
-            seconds=settings.decode_seconds,
-            memory=settings.decode_memory,
-            film_frames=settings.max_film_frames,
-            film_seconds=settings.max_film_seconds,
-            film_pixels=settings.max_film_pixels,
-        )
+        self._limits = Limits.by(settings)
 
     def add(self, upload: Path, owner: str | None) -> Sample:
         """A new sample of this file; ``owner`` is the digest of a token.

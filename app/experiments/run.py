@@ -26,7 +26,6 @@ MAX_ATTEMPTS = 6  # more often than any row of restarts would start one: it is t
 METHOD_SHARE = 0.92  # of the bar; the rest is for what is done around the method
 DEEP = "@16"  # ends the name of a job that computes the texture of a finished experiment at 16 bits
 DEEP_TEXTURE = ".texture-16"
-TEXTURES = 2  # files that are a video method's texture: WebM and MP4, its first pictures
 
 
 def run_job(store: ExperimentStore, blobs: BlobStore, job: str, progress: Progress, *, threads: int) -> None:
@@ -82,7 +81,7 @@ def _compute(
     sources = _read(store, blobs, experiment, stages)
     pictures = _pictures(experiment, sources, 8, threads, stages, blobs.temporary_directory)
     if experiment.transient:
-        pictures = islice(pictures, TEXTURES if method_named(experiment.method).moving else 1)
+        pictures = islice(pictures, method_named(experiment.method).textures)
     with _staged(blobs, pictures) as staged:
         diagnostics = {} if experiment.transient else diagnose(sources, staged, stages)
         stages("writing", 1.0)

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +15,9 @@ from app.images.formats.clip import Clip, ClipLimits, Frame, rate_of
 from app.images.formats.containers import container_of
 from app.images.formats.raw import Raw, is_opaque, upright, with_channels
 from app.images.png import SIGNATURE, Pixels
+
+if TYPE_CHECKING:
+    from app.settings import Settings
 
 MEBIBYTE = 1 << 20
 FORMATS = "PNG, JPEG, WebP, TIFF and GIF pictures, and MP4 (H.264), WebM, GIF, WebP and PNG videos"
@@ -44,6 +48,19 @@ class Limits:
     film_frames: int = 600
     film_seconds: float = 60.0
     film_pixels: int = 1 << 28
+
+    @classmethod
+    def by(cls, settings: "Settings") -> "Limits":
+        """What the settings allow."""
+        return cls(
+            bytes=settings.max_upload_bytes,
+            pixels=settings.max_upload_pixels,
+            seconds=settings.decode_seconds,
+            memory=settings.decode_memory,
+            film_frames=settings.max_film_frames,
+            film_seconds=settings.max_film_seconds,
+            film_pixels=settings.max_film_pixels,
+        )
 
     @property
     def clip(self) -> ClipLimits:

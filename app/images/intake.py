@@ -7,7 +7,7 @@ import socket
 import subprocess
 import sys
 import tempfile
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from threading import BoundedSemaphore, Lock
 from typing import Any
@@ -15,6 +15,7 @@ from typing import Any
 from app.errors import AppError, BrokenFileError, BusyError, TooLargeError, UnsupportedFormatError
 from app.images import decode_server
 from app.images.decode import Limits
+from app.images.keep import Kept
 
 AT_ONCE = max(2, os.cpu_count() or 2)
 WAIT_SECONDS = 60.0
@@ -30,23 +31,10 @@ ERRORS: dict[str, type[AppError]] = {
 
 
 @dataclass(frozen=True)
-class Intake:
-    """A stored picture: upright, in sRGB, without metadata.
+class Intake(Kept):
+    """A stored picture and where its file is."""
 
-    ``path`` is a PNG file of ``depth`` (8 or 16) bits; ``channels`` counts colour channels, 1 or 3; if ``transparent``,
-    an alpha channel follows them. A video has several ``frames``, ``rate`` of them a second, each of ``width`` ×
-    ``height`` pixels, in a film strip (`app.images.strip`); ``media_type`` is what it was, ``image/png`` for a still.
-    """
-
-    path: Path
-    width: int
-    height: int
-    channels: int
-    depth: int
-    transparent: bool
-    frames: int = 1
-    rate: float = 0.0
-    media_type: str = "image/png"
+    path: Path = field(kw_only=True)
 
 
 class DecodingServer:
@@ -137,7 +125,7 @@ def intake(path: Path, directory: Path, limits: Limits) -> Intake:
         os.close(descriptor)
         stored = Path(name)
         try:
-            return Intake(stored, **_decoded(decode_server.request(path.resolve(), stored, limits), limits))
+            return Intake(path=stored, **_decoded(decode_server.request(path.resolve(), stored, limits), limits))
         except BaseException:
             stored.unlink(missing_ok=True)
             raise

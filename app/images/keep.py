@@ -17,7 +17,12 @@ THREADS, WAITING = 2, 4
 
 @dataclass(frozen=True)
 class Kept:
-    """What is in the file, as `app.images.intake.Intake` says it."""
+    """What is in the file: a picture, upright, in sRGB, without metadata.
+
+    It is a PNG file of ``depth`` (8 or 16) bits; ``channels`` counts colour channels, 1 or 3; if ``transparent``, an
+    alpha channel follows them. A video has several ``frames``, ``rate`` of them a second, each of ``width`` ×
+    ``height`` pixels, in a film strip (`app.images.strip`); ``media_type`` is what it was, ``image/png`` for a still.
+    """
 
     width: int
     height: int

@@ -47,6 +47,11 @@ def read_crop(path: Path, rectangle: Rectangle) -> NDArray[np.float32]:
     InvalidInputError
         If the rectangle reaches outside the picture or holds pixels that are not opaque.
     """
+    return read_opaque(path, rectangle).astype(np.float32)
+
+
+def read_opaque(path: Path, rectangle: Rectangle) -> Pixels:
+    """Cut a rectangle's colours out as the whole numbers that are stored; raises as `read_crop` does."""
     colour, alpha = cut(path, rectangle)
     if alpha is not None and not is_opaque(alpha):
         raise InvalidInputError(
@@ -54,7 +59,7 @@ def read_crop(path: Path, rectangle: Rectangle) -> NDArray[np.float32]:
             "move it to where the picture is opaque, or fill the background in an image editor.",
             "crop",
         )
-    return colour.astype(np.float32)
+    return colour
 
 
 def has_transparency(path: Path, rectangle: Rectangle) -> bool:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from app.images.crop import Frames, Rectangle
 from app.images.png import Pixels
-from app.images.read import cut, has_transparency, read_crop
+from app.images.read import cut, has_transparency, read_opaque
 
 
 def place(crop: Rectangle, frame: int, height: int) -> Rectangle:
@@ -46,11 +46,11 @@ def read_frames(path: Path, crop: Rectangle, frames: Frames, height: int) -> NDA
     InvalidInputError
         If the crop reaches outside the strip or holds pixels that are not opaque.
     """
-    first = read_crop(path, place(crop, frames.first, height))
+    first = read_opaque(path, place(crop, frames.first, height))
     film = np.empty((frames.count, *first.shape), np.uint8)
     film[0] = first
     for index in range(1, frames.count):
-        film[index] = read_crop(path, place(crop, frames.first + index, height))
+        film[index] = read_opaque(path, place(crop, frames.first + index, height))
     return film
 
 

@@ -1,5 +1,7 @@
 """What the methods that render a pattern in patches of a texture have in common."""
 
+from collections.abc import Sequence
+
 from app.errors import InvalidInputError
 from app.methods.model import Size, StillParams
 from app.synthesis.cell_match import HALF
@@ -7,6 +9,11 @@ from app.synthesis.cell_match import HALF
 MOST_WORK = 10**11  # products: a few minutes on two processors
 PRODUCTS_OF_A_PLACE = 16  # that comparing a patch with one of all places takes time for
 SEARCHED_TEXTURE, SEARCHED_PATTERN = (8, 24), (16, 0)  # bytes for each value and for each pixel of them
+
+
+def pattern_size(sizes: Sequence[Size]) -> tuple[int, int]:
+    """Width and height of the pattern, which is the second input."""
+    return sizes[1].width, sizes[1].height
 
 
 def refuse_other_size(pattern: Size, params: StillParams) -> None:

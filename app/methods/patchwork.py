@@ -11,7 +11,7 @@ from app.images.png import PngWriter
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
 from app.methods.model import Context, Fact, Method, Picture, Progress, Size, Source, StillParams
 from app.methods.options import ADVANCED
-from app.methods.patches import LEAST_GRID, refuse_small
+from app.methods.patches import BYTES_OF_CELL, LEAST_GRID, cell_colours, refuse_small
 from app.methods.pictures import coordinate_colours, crops, encode, refuse_infinite
 from app.methods.random_phase import INPUTS
 from app.methods.references import PATCHWORK as REPORT
@@ -23,7 +23,6 @@ from app.synthesis.patchwork import BAND, TILE, Patchwork, painted
 from app.synthesis.team import Team
 
 BANDS = 4  # that are in work at once
-BYTES_OF_CELL = 1000  # while cells are laid out
 DIMMED = np.float32(0.25)
 
 Real = NDArray[np.float32]
@@ -109,7 +108,7 @@ def run(sources: Sequence[Source], params: PatchworkParams, context: Context) ->
         del made, png
         context.progress("views", 0.6)
         places = coordinate_colours(*h.shape[:2])
-        colours = _colours(cells, sources_of, places)
+        colours = cell_colours(cells, sources_of, places)
         soft = params.blend != "sharp"
 
         def paint(top: int, bottom: int) -> Real:
@@ -120,14 +119,6 @@ def run(sources: Sequence[Source], params: PatchworkParams, context: Context) ->
     yield _key(cells, sources_of, places, context)
     yield from crops(sources, context)
     context.progress("views", 1.0)
-
-
-def _colours(cells: Cells, sources: NDArray[np.int64], places: Real) -> Real:
-    """A colour for each cell: that of the middle of what it shows, which for a cell cut off at the border is aside."""
-    middle = sources + (cells.zones[:, ::2] + cells.zones[:, 1::2]) // 2
-    y, x = middle.clip(0, np.array(places.shape[:2]) - 1).T
-    colours: Real = places[y, x]
-    return colours
 
 
 def _key(cells: Cells, sources: NDArray[np.int64], places: Real, context: Context) -> Picture:

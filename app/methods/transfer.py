@@ -3,18 +3,17 @@
 from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
-from app.methods.matching import refuse_long_search, refuse_other_size, search_bytes
+from app.methods.matching import pattern_size, refuse_long_search, refuse_other_size, search_bytes
 from app.methods.model import Context, Fact, Method, Picture, Size, Slot, Source, StillParams
 from app.methods.options import WHOLE_IN_MEMORY
-from app.methods.patches import LEAST_GRID, refuse_small
-from app.methods.pictures import Real, coordinate_colours, crops, encode, refuse_infinite
+from app.methods.patches import BYTES_OF_CELL, LEAST_GRID, cell_colours, refuse_small
+from app.methods.pictures import coordinate_colours, crops, encode, refuse_infinite
 from app.methods.references import PATCHWORK
 from app.methods.several import alike
-from app.synthesis.cells import Cells, jittered_cells, least_sample
+from app.synthesis.cells import jittered_cells, least_sample
 from app.synthesis.field import row_blocks
 from app.synthesis.patch_match import Matches
 from app.synthesis.patchwork import painted
@@ -23,7 +22,6 @@ from app.synthesis.transfer import rescaled, transfer
 from app.synthesis.work import Work
 
 BYTES_OF_TEXTURE, BYTES_OF_PATTERN = 4, 8  # for each value, beside the search
-BYTES_OF_CELL = 1000
 
 
 class TransferParams(StillParams):
@@ -61,11 +59,6 @@ class TransferParams(StillParams):
         description="Give every channel of the pattern the texture's mean and range before they are compared, so that "
         "dark and light find their like. Off: the colours are compared as they are.",
     )
-
-
-def pattern_size(sizes: Sequence[Size]) -> tuple[int, int]:
-    """Width and height of the pattern."""
-    return sizes[1].width, sizes[1].height
 
 
 def check(sizes: Sequence[Size], params: TransferParams) -> None:
@@ -115,7 +108,7 @@ def run(sources: Sequence[Source], params: TransferParams, context: Context) -> 
         facts = _facts(made.matches, channels, peak)
         yield encode("texture", "Texture", made.output, peak, context, kind="texture", facts=facts)
         context.progress("cells", 0.9)
-        colours = _colours(cells, made.matches, coordinate_colours(*texture.shape[:2]))
+        colours = cell_colours(cells, made.matches.places, coordinate_colours(*texture.shape[:2]))
         picture = np.empty((height, width, 3), np.float32)
 
         def paint(rows: tuple[int, int]) -> None:
@@ -144,14 +137,6 @@ def _facts(matches: Matches, channels: int, peak: int) -> tuple[Fact, ...]:
         Fact("cells", "Cells", len(matches.places)),
         Fact("sources", "Different places that they were taken from", len(np.unique(matches.places, axis=0))),
     )
-
-
-def _colours(cells: Cells, matches: Matches, places: Real) -> Real:
-    """A colour for each cell: that of the middle of what it shows of the texture."""
-    middle: NDArray[np.int64] = matches.places + (cells.zones[:, ::2] + cells.zones[:, 1::2]) // 2
-    y, x = middle.clip(0, np.array(places.shape[:2]) - 1).T
-    colours: Real = places[y, x]
-    return colours
 
 
 LEAVES, SCENE = ("leaves_forest_floor", "0,0,512,512"), ("scene_china", "60,20,400,400")

@@ -13,6 +13,7 @@ from app.images.png import encode_png
 from app.images.video.cube import VideoCube
 from app.methods.films import film_memory, texture_film
 from app.methods.model import Context, Picture, Size, Source
+from app.methods.options import ADVANCED
 from app.methods.pictures import encode
 from app.synthesis.cell_shapes import reach
 from app.synthesis.cells import LEFT_OUT, Window
@@ -31,6 +32,18 @@ INTERVAL: Any = Field(
     "must hold what is seen around a transition, about 2½ intervals.",
 )
 HELD = 8  # frames at a time, in single precision: as many as threads are likely, and what each works with
+
+
+def sharpness(default: float) -> Any:
+    """The field of the parameter f."""
+    return Field(
+        default,
+        ge=1,
+        le=40,
+        title="Sharpness f",
+        description="How suddenly a patch gives way to its neighbour: the higher, the more suddenly.",
+        json_schema_extra=ADVANCED,
+    )
 
 
 def refuse_short(size: Size, frames: int, interval: int, longest: int) -> None:
@@ -86,9 +99,9 @@ def textured(
     )
 
 
-def average_picture(film: NDArray[np.uint8], context: Context) -> Picture:
-    """The clip's mean over time, A(x)."""
-    return encode("average", "Average image of the clip", film.mean(0, np.float32), 255, context)
+def average_picture(average: Real, context: Context) -> Picture:
+    """The clip's mean over time, A(x), (H, W, C)."""
+    return encode("average", "Average image of the clip", average, 255, context)
 
 
 def cells_cube(painter: Painter, shape: tuple[int, int, int], context: Context) -> Picture:

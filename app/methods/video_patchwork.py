@@ -11,7 +11,6 @@ from pydantic import Field
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
 from app.methods.films import crop_film
 from app.methods.model import Context, Method, Picture, SeamlessParams, Size, Slot, Source
-from app.methods.options import ADVANCED
 from app.methods.patches import LEAST_GRID, refuse_small
 from app.methods.references import PATCHWORK
 from app.methods.video_patches import (
@@ -25,6 +24,7 @@ from app.methods.video_patches import (
     frames_bytes,
     patchwork_bytes,
     refuse_short,
+    sharpness,
     textured,
 )
 from app.synthesis.cells import jittered_cells, least_sample, random
@@ -53,14 +53,7 @@ class VideoPatchworkParams(SeamlessParams):
         "stands still goes on standing still; 'mosaic': patches end in time as they do in space, so that everything "
         "comes and goes.",
     )
-    sharpness: float = Field(
-        6,
-        ge=1,
-        le=40,
-        title="Sharpness f",
-        description="How suddenly a patch gives way to its neighbour: the higher, the more suddenly.",
-        json_schema_extra=ADVANCED,
-    )
+    sharpness: float = sharpness(6)
 
 
 def check(sizes: Sequence[Size], params: VideoPatchworkParams) -> None:
@@ -93,7 +86,7 @@ def run(sources: Sequence[Source], params: VideoPatchworkParams, context: Contex
     frame, painter = (_mosaic if params.arrangement == "mosaic" else _fixed)(film, shape, params)
     yield from textured(frame, shape, source, context)
     yield cells_cube(painter, shape, replace(context, progress=context.between(0.86, 0.9)))
-    yield average_picture(film, context)
+    yield average_picture(film.mean(0, np.float32), context)
     yield from crop_film(source, replace(context, progress=context.between(0.9, 1)))
     context.progress("crop", 1)
 

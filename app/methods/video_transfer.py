@@ -9,9 +9,8 @@ from pydantic import Field
 
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
 from app.methods.films import crop_film
-from app.methods.matching import refuse_long_search, refuse_other_size, search_bytes
+from app.methods.matching import pattern_size, refuse_long_search, refuse_other_size, search_bytes
 from app.methods.model import Context, LoopParams, Method, Picture, Size, Slot, Source
-from app.methods.options import ADVANCED
 from app.methods.patches import LEAST_GRID, refuse_small
 from app.methods.pictures import encode, refuse_infinite
 from app.methods.references import PATCHWORK
@@ -23,6 +22,7 @@ from app.methods.video_patches import (
     cells_cube,
     patchwork_bytes,
     refuse_short,
+    sharpness,
     textured,
 )
 from app.synthesis.cell_match import match_cells
@@ -58,14 +58,7 @@ class VideoTransferParams(LoopParams):
         description="Among how many places of the clip, drawn at random, the one that is most like the pattern is "
         "taken for each patch; 0: among all. More follow the pattern more closely and repeat places more often.",
     )
-    sharpness: float = Field(
-        2,
-        ge=1,
-        le=40,
-        title="Sharpness f",
-        description="How suddenly a patch gives way to its neighbour: the higher, the more suddenly.",
-        json_schema_extra=ADVANCED,
-    )
+    sharpness: float = sharpness(2)
 
 
 def check(sizes: Sequence[Size], params: VideoTransferParams) -> None:
@@ -95,7 +88,8 @@ def run(sources: Sequence[Source], params: VideoTransferParams, context: Context
     film, shape = clip.film.frames, _shape(sizes, params)
     context.progress("cells", 0)
     cells = jittered_cells(*shape[1:], grid=params.grid, sharpness=params.sharpness, tileable=False, seed=params.seed)
-    places = _matched(film, pattern, cells, params, replace(context, progress=context.between(0, 0.2)))
+    average = film.mean(0, np.float32)
+    places = _matched(average, pattern, cells, params, replace(context, progress=context.between(0, 0.2)))
     transitions = Transitions(
         cells.count, len(film), shape[0], params.interval, loop=params.loop, rng=random(params.seed, IN_TIME)
     )
@@ -107,17 +101,16 @@ def run(sources: Sequence[Source], params: VideoTransferParams, context: Context
         shape,
         replace(context, progress=context.between(0.86, 0.9)),
     )
-    yield average_picture(film, context)
+    yield average_picture(average, context)
     yield from crop_film(clip, replace(context, progress=context.between(0.9, 1)))
     yield encode("crop-2", "Pattern", pattern.pixels, pattern.peak, context)
     context.progress("crop", 1)
 
 
 def _matched(
-    film: NDArray[np.uint8], pattern: Source, cells: Cells, params: VideoTransferParams, context: Context
+    average: Real, pattern: Source, cells: Cells, params: VideoTransferParams, context: Context
 ) -> NDArray[np.int64]:
     """The place of the clip for every cell, found in the average image."""
-    average = film.mean(0, np.float32)
     wanted = rescaled(_with_channels(pattern.pixels, average.shape[2]), average)
     with Team(context.threads) as team:
         matches = match_cells(
@@ -215,7 +208,7 @@ VIDEO_TRANSFER = Method(
     explanation=EXPLANATION,
     check=check,
     run=run,
-    size=lambda sizes: (sizes[1].width, sizes[1].height),
+    size=pattern_size,
     toroidal=lambda params: False,
     memory=memory,
 )

@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 from app.experiments.model import Experiment, Output
+from app.experiments.outputs import MP4_SUFFIX
 from app.experiments.pictures import POSTERS
-
-MP4 = "-mp4"  # ends the name of the same film for browsers that do not play the first file
 
 
 @dataclass(frozen=True)
@@ -27,7 +26,7 @@ def clip_of(experiment: Experiment, output: Output) -> Clip | None:
     """The film that an output is, None for a picture."""
     if not output.film:
         return None
-    other = experiment.output(f"{output.name}{MP4}")
+    other = experiment.output(f"{output.name}{MP4_SUFFIX}")
     files = [output] if other is None else [output, other]
     return Clip(
         sources=tuple((address(experiment, file.name), file.media_type) for file in files),

@@ -10,7 +10,7 @@ from app.experiments.service import Service
 from app.images.crop import Rectangle
 from app.methods.explanation import Exhibit, Figure
 from app.methods.registry import method
-from app.web.clips import Clip, clip_of
+from app.web.clips import Clip, address, clip_of
 from app.web.drafts import form_url
 from app.web.panes import parts
 from app.web.templating import label
@@ -52,7 +52,7 @@ def shown(service: Service, exhibit: Exhibit) -> list[Shown]:
     return [
         Shown(
             caption=_caption(exhibit, output.name, output.title, first=output is found[0]),
-            url=f"/api/v1/experiments/{made.id}/outputs/{output.name}",
+            url=address(made, output.name),
             page=f"/experiments/{made.id}",
             width=output.width,
             height=output.height,

@@ -51,11 +51,6 @@ def most(method: Method) -> int:
     return len(method.inputs) + method.more
 
 
-def slot(method: Method, number: int) -> Slot:
-    """What a method says of its input of this number; those beyond its list are like the last one."""
-    return method.inputs[min(number, len(method.inputs)) - 1]
-
-
 def further() -> range:
     """The numbers of the inputs, from 2 on, that some method takes."""
     return range(2, max(most(method) for method in METHODS.values()) + 1)
@@ -181,7 +176,7 @@ def read_inputs(
         numbers = [values.get(name, "").strip() for name in crop_names(number)]
         empty = number > 1 and not any(numbers)
         crop = choices.start(found) if empty else _crop(found, numbers, f"{prefix(number)}crop", errors)
-        frames = _frames(found, slot(method, number), number, values, errors)
+        frames = _frames(found, method.slot(number - 1), number, values, errors)
         if crop is not None:
             read[number] = NewInput(found.id, crop, frames)
     return read

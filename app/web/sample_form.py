@@ -14,7 +14,7 @@ from app.methods.registry import METHODS
 from app.samples import BundledSample
 from app.web.drafts import SIZES, Draft
 from app.web.forms import MOVING, SHARED, form_name, own_fields, shared
-from app.web.inputs import ORDINALS, SIDES, Choices, further, most, optional, prefix, slot
+from app.web.inputs import ORDINALS, SIDES, Choices, further, most, optional, prefix
 
 
 @dataclass(frozen=True)
@@ -136,7 +136,7 @@ def _method(method: Method, draft: Draft, sample: Sample, choices: Choices) -> M
         tuple(entry for entry in own if not entry.advanced),
         advanced,
         takes,
-        tuple(number for number in takes if slot(method, number).moving),
+        tuple(number for number in takes if method.slot(number - 1).moving),
         tuple(entry.title for entry in method.inputs) if len(takes) > 1 and not method.more else (),
         tuple(name for name in shared(method) if name not in SHARED),
         method.size is first_size,
@@ -149,6 +149,6 @@ def _method(method: Method, draft: Draft, sample: Sample, choices: Choices) -> M
 def _clips(method: Method, sample: Sample, choices: Choices) -> dict[str, str]:
     """Lead to the form of each bundled clip; where the method takes a still picture besides, with this one as that."""
     query = {"method": method.name}
-    if still := [number for number in range(2, most(method) + 1) if not slot(method, number).moving]:
+    if still := [number for number in range(2, most(method) + 1) if not method.slot(number - 1).moving]:
         query[ORDINALS[still[0] - 1]] = sample.id
     return {clip.title or clip.id: f"/samples/{clip.id}?{urlencode(query)}" for clip in choices.samples if clip.moving}
