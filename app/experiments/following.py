@@ -118,7 +118,8 @@ def _snapshot_of(experiment: Experiment) -> Snapshot:
 async def _within(event: asyncio.Event, seconds: float) -> bool:
     """Return when the event is set, or when the seconds have passed; clear it. Whether it was set."""
     with suppress(TimeoutError):
-        await asyncio.wait_for(event.wait(), seconds)
+        async with asyncio.timeout(seconds):  # `wait_for` of Python 3.11 drops a cancellation that comes with the event
+            await event.wait()
     told = event.is_set()
     event.clear()
     return told
