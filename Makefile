@@ -21,7 +21,9 @@ run: setup ## serve on http://127.0.0.1:$(PORT), data in ./data
 	$(BIN)/microtexture serve --port $(PORT)
 
 test: lint programs ## everything: lint, types, unit, doctest, API, acceptance and crash tests
-	$(WITH_BROWSER) $(BIN)/pytest -m 'not load'
+	@# What kills processes, and what watches a page, has the machine to itself.
+	$(WITH_BROWSER) $(BIN)/pytest -n 2 --dist loadfile -m 'not (acceptance or chaos or load)'
+	$(WITH_BROWSER) $(BIN)/pytest tests -m '(acceptance or chaos) and not load'
 
 lint: $(VENV)/.ready-dev ## ruff and mypy
 	$(BIN)/ruff check .

@@ -232,9 +232,13 @@ def environment(tmp_path: Path) -> dict[str, str]:
 
 
 def test_an_interrupt_ends_it_with_130_and_leaves_no_file(tmp_path: Path, environment: dict[str, str]) -> None:
-    """Interrupted while the method runs: its progress callback is where the signal is sent."""
+    """Interrupted while the method runs: its progress callback is where the signal is sent.
+
+    What was started in the background of a shell, as these tests may be, ignores interrupts, and so would its child.
+    """
     script = (
         "import os, signal, sys\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "import app.cli.progress as progress\n"
         "progress.Bar.__call__ = lambda *_: os.kill(os.getpid(), signal.SIGINT)\n"
         "from app.cli import main\n"

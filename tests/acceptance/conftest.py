@@ -16,6 +16,7 @@ from typing import Any
 import httpx
 import numpy as np
 import pytest
+from axe_playwright_python.sync_playwright import Axe
 from PIL import Image
 from playwright.sync_api import Browser, BrowserContext, Page, Playwright, expect, sync_playwright
 
@@ -23,6 +24,8 @@ ROOT = Path(__file__).resolve().parents[2]
 SAMPLES = ROOT / "samples"
 SCREENSHOTS = Path(__file__).parent / "screenshots"
 PATIENCE = 60.0
+STANDARDS = {"runOnly": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]}
+COLOURS = {"runOnly": {"type": "rule", "values": ["color-contrast", "link-in-text-block"]}}
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -193,6 +196,17 @@ def until_fixture() -> Callable[..., Any]:
 def photograph() -> Path:
     """What a visitor uploads: 1024 × 1024 pixels of soil."""
     return SAMPLES / "soil_ground010.png"
+
+
+@pytest.fixture(scope="session")
+def assert_accessible() -> Callable[[Page, str], None]:
+    """Axe finds nothing on a page of this theme. The dark one differs in colours only, and only they are looked at."""
+
+    def check(page: Page, theme: str) -> None:
+        found = Axe().run(page, options=COLOURS if theme == "dark" else STANDARDS)
+        assert found.violations_count == 0, f"{page.url}: {found.generate_report()}"
+
+    return check
 
 
 @pytest.fixture

@@ -109,6 +109,11 @@ class Site:
         """A client with cookies of its own."""
         return httpx.Client(base_url=self.url, timeout=PATIENCE, verify=False, **options)
 
+    @property
+    def incoming(self) -> list[Path]:
+        """Files of uploads that are on the disk."""
+        return list((self.settings.data_dir / "incoming").glob("*"))
+
     def upload(self, data: bytes | None = None, name: str = "photo.png") -> dict[str, Any]:
         response = self.client.post("/api/v1/samples", files={"file": (name, data or picture())})
         assert response.status_code == 201, response.text
@@ -164,7 +169,9 @@ def serve(directory: Path, **changed: Any) -> Iterator[Site]:
 @contextmanager
 def serving(app: FastAPI) -> Iterator[str]:
     """The address of an application served by uvicorn in a thread."""
-    listener = socket.create_server(("127.0.0.1", 0))
+    # Named, the protocol makes asyncio send answers at once: else each one waits 40 ms for an acknowledgement.
+    listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM, socket.IPPROTO_TCP)
+    listener.bind(("127.0.0.1", 0))
     config = uvicorn.Config(app, log_level="warning", timeout_graceful_shutdown=2)
     server = uvicorn.Server(config)
     thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})

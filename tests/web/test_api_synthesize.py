@@ -78,7 +78,7 @@ def test_a_fault_in_one_of_several_is_refused_with_its_field(site, picture, give
     response = several(site, pictures, **fields)
     assert response.status_code == 422, response.text
     assert [fault["field"] for fault in response.json()["errors"]] == [field]
-    assert list((site.settings.data_dir / "incoming").iterdir()) == []
+    assert site.incoming == []
 
 
 def test_a_fifth_photograph_is_refused(site, picture):
@@ -89,7 +89,7 @@ def test_the_bound_of_bytes_is_for_all_photographs_together(site, picture):
     half = picture(190, 190)  # noise hardly deflates: about 100 kB of the 256 that may come
     assert several(site, [half, half], crop="0,0,16,16", **{"crop-2": "0,0,16,16"}).status_code == 200
     assert several(site, [half, half, half]).status_code == 413
-    assert list((site.settings.data_dir / "incoming").iterdir()) == []
+    assert site.incoming == []
 
 
 def test_empty_fields_count_as_left_out(site, picture):
@@ -145,7 +145,7 @@ def test_nothing_of_it_is_kept(serve, tmp_path, picture):
         assert send(site, picture(), alpha="9").status_code == 422
         assert site.service.counts() == before
         assert site.client.get("/api/v1/experiments").json()["experiments"] == []
-        assert list((site.settings.data_dir / "incoming").iterdir()) == []
+        assert site.incoming == []
 
 
 def test_hanging_up_cancels_the_run(site, picture, until):

@@ -27,7 +27,7 @@ def test_an_oversized_upload_is_too_large(site, path, declared, excess):
     response = site.client.post(path, content=content, headers=FORM)
     assert (response.status_code, response.headers["Content-Type"]) == (413, PROBLEM)
     assert "256 kB" in response.json()["detail"]
-    assert list((site.settings.data_dir / "incoming").iterdir()) == []
+    assert site.incoming == []
 
 
 @pytest.mark.parametrize("declared", [True, False], ids=["declared", "chunked"])
@@ -54,10 +54,9 @@ def test_who_asks_first_is_refused_before_sending(site):
 
 
 def test_a_client_that_goes_in_the_middle_leaves_nothing(site, until):
-    incoming = site.settings.data_dir / "incoming"
     host, port = site.url.removeprefix("http://").split(":")
     with socket.create_connection((host, int(port)), timeout=10) as connection:
         head = b"POST /api/v1/samples HTTP/1.1\r\nHost: test\r\nContent-Type: multipart/form-data; boundary=b\r\n"
         connection.sendall(head + b"Content-Length: 100000\r\n\r\n" + HEAD + b"x" * 1000)
-        until(lambda: list(incoming.iterdir()))
-    until(lambda: not list(incoming.iterdir()))
+        until(lambda: site.incoming)
+    until(lambda: not site.incoming)

@@ -149,7 +149,7 @@ FILE = b'--b\r\nContent-Disposition: form-data; name="file"; filename="a.png"\r\
 def test_a_form_that_cannot_be_read(site, path, content, headers, status):
     response = site.client.post(path, content=content, headers=headers)
     assert (response.status_code, response.headers["Content-Type"]) == (status, PROBLEM)
-    assert list((site.settings.data_dir / "incoming").iterdir()) == []
+    assert site.incoming == []
 
 
 def test_an_unexpected_error_tells_nothing_and_is_logged(site, caplog):
