@@ -35,10 +35,8 @@ def sky_pan() -> Iterator[Real]:
 
 
 METRES = 0.002  # of a pixel: the ripples in the sand are then 10 cm apart
-DEPTH = 0.4  # metres of water
 REFRACTION = 1 - 1 / 1.33  # a ray from straight above is turned by this part of the surface's slope
 GRAVITY, TENSION = 9.81, 7.3e-5  # m/s²; m³/s², surface tension by density
-SLOPE = 0.12  # of the water, root mean square
 SLOWER = 3  # than it went: the camera took 72 frames a second
 SUN = 80  # pixels that its rays, about 40° off the vertical, go on along each axis in the water
 MARGIN = 48  # pixels around the picture from which light and sight may come
@@ -46,20 +44,30 @@ RAYS = 3  # along a pixel's side
 
 
 def sand_under_water() -> Iterator[Real]:
-    """Rippled sand under forty centimetres of clear water in a breeze.
+    """Rippled sand under forty centimetres of clear water in a breeze: the sun draws a net of bright lines."""
+    return _under_water("sand_desert009.png", 352, 96, depth=0.4, slope=0.12, waves=11)
+
+
+def leaves_under_water() -> Iterator[Real]:
+    """Fallen leaves on the ground of a shallow pool: each stays where it is, and wavers."""
+    return _under_water("leaves_forest_floor.jpg", 272, 272, depth=0.25, slope=0.12, waves=12)
+
+
+def _under_water(name: str, top: int, left: int, *, depth: float, slope: float, waves: int) -> Iterator[Real]:
+    """What lies in this corner of a photograph, under ``depth`` metres of water of this slope, root mean square.
 
     The surface is a sum of travelling waves with the dispersion relation of water, ω² = (g k + τ k³) tanh(k h). Its
-    slope bends the sun's light, which gathers in bright lines on the sand, and, at another place, the view of the sand.
+    slope bends the sun's light, which gathers in bright lines on the ground, and, at another place, the view of it.
     """
-    rng = np.random.default_rng(11)
+    rng = np.random.default_rng(waves)
     count = 60
     k = 2 * np.pi / np.exp(rng.uniform(np.log(0.06), np.log(0.5), count))  # radians a metre
     towards = rng.normal(0.6, 1.1, count)
-    omega = np.sqrt((GRAVITY * k + TENSION * k**3) * np.tanh(k * DEPTH))
+    omega = np.sqrt((GRAVITY * k + TENSION * k**3) * np.tanh(k * depth))
     phase = rng.uniform(0, 2 * np.pi, count)
-    slope = SLOPE * np.sqrt(2 / (k * np.sum(1 / k)))
+    slopes = slope * np.sqrt(2 / (k * np.sum(1 / k)))
     side = SIDE + 2 * MARGIN
-    sand = _photograph("sand_desert009.png")[352 : 352 + side, 96 : 96 + side]
+    ground = _photograph(name)[top : top + side, left : left + side]
     ray = (np.arange(RAYS * side) + 0.5) / RAYS - 0.5
     rays = np.stack(np.meshgrid(ray, ray, indexing="ij"))
 
@@ -67,7 +75,7 @@ def sand_under_water() -> Iterator[Real]:
 
     def shift(at: Real, t: float) -> Real:
         """Pixels by which rays that pass the surface at rows and columns ``at`` come off the vertical, y then x."""
-        amplitudes = -DEPTH * REFRACTION / METRES * slope * np.exp(1j * (phase - omega * t))
+        amplitudes = -depth * REFRACTION / METRES * slopes * np.exp(1j * (phase - omega * t))
         parts = [amplitudes * each / k for each in (down, across)]
         return np.stack([_waves(METRES * down, METRES * across, part, at) for part in parts])
 
@@ -78,7 +86,7 @@ def sand_under_water() -> Iterator[Real]:
         light = np.bincount(np.ravel_multi_index(fallen, (side, side)).ravel(), minlength=side**2)
         # The sun's disc, half a degree wide, blurs its picture at this depth by about a pixel.
         sun = gaussian_filter(light.reshape(side, side) / RAYS**2, 0.9)
-        lit = sand * (0.5 + 0.6 * np.log1p(sun))[:, :, None] * (0.88, 1.03, 1.08)
+        lit = ground * (0.5 + 0.6 * np.log1p(sun))[:, :, None] * (0.88, 1.03, 1.08)
         y, x = shift(view, t) + _grid(side)
         inside = slice(MARGIN, MARGIN + SIDE)
         yield _look(_splines(lit), y[inside, inside], x[inside, inside])
@@ -134,7 +142,7 @@ def _smoke(rng: np.random.Generator) -> Real:
     return np.stack([plane / plane.std() for plane in planes], axis=2)
 
 
-CLIPS = {"sand_under_water": sand_under_water, "sky_pan": sky_pan, "advected_noise": advected_noise}
+CLIPS = {clip.__name__: clip for clip in (sand_under_water, leaves_under_water, sky_pan, advected_noise)}
 
 
 def _waves(down: Real, across: Real, amplitude: NDArray[np.complex128], at: Real) -> Real:

@@ -133,6 +133,7 @@ def _mosaic(
 
 SKY = (("sky_pan", "0,0,320,320"),)
 SAND = (("sand_under_water", "0,0,320,320"),)
+LEAVES = (("leaves_under_water", "0,0,320,320"),)
 SMOKE = (("advected_noise", "0,0,320,320"),)
 
 EXPLANATION = Explanation(
@@ -180,6 +181,15 @@ EXPLANATION = Explanation(
         "two parts of a transition may show nearly the same frames, and then contrast rises for a moment.",
     ),
     figures=(
+        Figure(
+            "Clips without an end",
+            "Sand and leaves under water, and the videos made of them. The sand and the leaves lie still, the light "
+            "and the water play on, and the last frame continues in the first.",
+            (
+                Exhibit("video-patchwork", SAND, {"seed": 1}, ("crop", "texture")),
+                Exhibit("video-patchwork", LEAVES, {"seed": 1}, ("crop", "texture")),
+            ),
+        ),
         Figure(
             "The clip's cube and the video's",
             "Water over sand, smoke and clouds, each as a block with time running upwards. What stands still makes "

@@ -136,9 +136,10 @@ def _shape(sizes: Sequence[Size], params: VideoTransferParams) -> tuple[int, int
     return params.frames or sizes[0].frames, sizes[1].height, sizes[1].width
 
 
-SCENE = ("scene_china", "100,40,480,360")
-SMOKE, SKY, SAND = ((name, "0,0,320,320") for name in ("advected_noise", "sky_pan", "sand_under_water"))
-SHOWN = ("crop-2", "average", "cube")
+SCENE = ("scene_china", "60,20,400,400")
+LEAVES, SMOKE, SKY, SAND = (
+    (name, "0,0,320,320") for name in ("leaves_under_water", "advected_noise", "sky_pan", "sand_under_water")
+)
 
 EXPLANATION = Explanation(
     what=(
@@ -170,27 +171,35 @@ EXPLANATION = Explanation(
     ),
     figures=(
         Figure(
-            "A scene in smoke and in clouds",
-            "The pattern, the clip's average image, in which its light and dark places are looked for, and the video, "
-            "whose first and last frames meet. All places of the average image are compared.",
+            "A pavilion under water",
+            "The clip, the pattern, the clip's average image, in which its light and dark places are looked for, and "
+            "the video, whose first and last frames meet. All places of the average image are compared.",
             (
-                Exhibit("video-transfer", (SMOKE, SCENE), {"seed": 1, "candidates": 0}, SHOWN, "Advected noise"),
-                Exhibit("video-transfer", (SKY, SCENE), {"seed": 1, "candidates": 0}, SHOWN, "Clouds"),
+                Exhibit(
+                    "video-transfer",
+                    (LEAVES, SCENE),
+                    {"seed": 1, "candidates": 0},
+                    ("crop", "crop-2", "average", "texture"),
+                ),
             ),
         ),
         Figure(
             "Fewer candidates",
-            "Among 20 places drawn at random there is seldom a good one, among 200 mostly: the fewer, the more varied, "
-            "and the harder to recognise.",
-            (
-                Exhibit("video-transfer", (SMOKE, SCENE), {"seed": 1, "candidates": 20}, ("cube", "cells"), "20"),
-                Exhibit("video-transfer", (SMOKE, SCENE), {"seed": 1}, ("cube", "cells"), "200"),
+            "Among two places drawn at random there is seldom a good one, among twenty often: the fewer, the more "
+            "varied, and the harder to recognise.",
+            tuple(
+                Exhibit("video-transfer", (LEAVES, SCENE), {"seed": 1, "candidates": n}, ("texture",), f"{n} places")
+                for n in (2, 20, 200)
             ),
         ),
         Figure(
-            "An average without contrast",
-            "The light on the sand wanders everywhere, and its average is an even grey: nothing of the scene is left.",
-            (Exhibit("video-transfer", (SAND, SCENE), {"seed": 1, "candidates": 0}, SHOWN),),
+            "Averages without contrast",
+            "In smoke and in clouds everything moves: their averages are nearly even, and the scene is faint. The "
+            "light on the sand wanders everywhere, and nothing of the scene is left.",
+            tuple(
+                Exhibit("video-transfer", (clip, SCENE), {"seed": 1, "candidates": 0}, ("texture",), label)
+                for clip, label in ((SMOKE, "smoke"), (SKY, "clouds"), (SAND, "sand under water"))
+            ),
         ),
     ),
 )

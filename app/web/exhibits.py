@@ -19,6 +19,7 @@ SAMPLE = "Sample"
 CROP = "crop"
 MOST_IN_A_ROW = 7
 SMALL = 160  # pixels; what is smaller is shown at twice its size
+WIDE = 1760  # pixels; pictures of several sizes that are together no wider stand in one row, a little smaller if needed
 
 
 @dataclass(frozen=True)
@@ -76,6 +77,7 @@ def figure_view(service: Service, figure: Figure) -> dict[str, Any]:
         "figure": figure,
         "groups": [pictures] if alike else groups,
         "layout": f"of-{columns}" if alike else "mixed",
+        "rows": [sum(picture.width for picture in group) <= WIDE for group in groups],
         "scale": 2 if max(picture.width for picture in pictures) <= SMALL else 1,
     }
 
