@@ -21,7 +21,7 @@ from app.synthesis.field import Progress, into, row_blocks
 from app.synthesis.patches import Patches
 from app.synthesis.team import Team
 
-BAND, TILE = 128, 1024  # rows and columns that are joined at once: fewer calls, and the sums still stay in the cache
+BAND, TILE = 192, 1024  # rows and columns that are joined at once: with smaller ones calls take longer than sums
 
 Blend = Literal["deviation", "feather", "sharp"]
 Real = NDArray[np.float32]
@@ -95,16 +95,15 @@ def _join(out: Real, top: int, cells: Cells, show: Callable[[Part], Real], blend
         window = Window(top, bottom, left, min(left + TILE, cells.width))
         tile = out[:, :, left : window.right]
         norm = np.zeros(tile.shape[1:], np.float32)
-        room = np.empty(norm.size, np.float32)
+        room = np.empty(tile.size, np.float32)
         for part in cells.parts(window, among):
             there, shown = (part.rows, part.columns), show(part)
             if blend == "sharp":
                 np.copyto(tile[:, *there], shown, where=part.weight == 1)
                 continue
-            term = room[: part.weight.size].reshape(part.weight.shape)
-            norm[there] += part.weight if blend == "feather" else np.square(part.weight, out=term)
-            for plane, values in zip(tile, shown, strict=True):
-                plane[there] += np.multiply(values, part.weight, out=term)
+            norm[there] += part.weight if blend == "feather" else np.square(part.weight)
+            terms = room[: len(tile) * part.weight.size].reshape(len(tile), *part.weight.shape)
+            tile[:, *there] += np.multiply(shown, part.weight, out=terms)
         if blend != "sharp":
             tile /= norm if blend == "feather" else np.sqrt(norm, out=norm)
 

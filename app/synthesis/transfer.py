@@ -25,7 +25,7 @@ from app.synthesis.field import row_blocks
 from app.synthesis.patch_match import Matches
 from app.synthesis.work import Work
 
-TILE = 512  # columns that are joined at once
+BAND, TILE = 128, 512  # rows and columns that are joined at once
 TINY = 1e-30  # instead of 0, for a cell whose box holds no pixel that it has a part of
 
 Real = NDArray[np.float32]
@@ -118,7 +118,7 @@ class _Mosaic:
         self._start = sources[cells.cell] + margin
         self.windows = [
             Window(top, bottom, left, min(left + TILE, cells.width))
-            for top, bottom in row_blocks(cells.height)
+            for top, bottom in row_blocks(cells.height, BAND)
             for left in range(0, cells.width, TILE)
         ]
 
@@ -127,7 +127,7 @@ class _Mosaic:
         rows, columns = part.rows, part.columns
         return self._planes[:, y + rows.start : y + rows.stop, x + columns.start : x + columns.stop]
 
-    def averages(self, work: Work) -> Double:
+    def averages(self, work: Work) -> Real:
         """Every patch's average, shape (centres, C)."""
         found: dict[Window, tuple[list[int], list[Double]]] = {}
 
@@ -148,10 +148,10 @@ class _Mosaic:
         for window in self.windows:  # in this order, whichever was done first
             centres, sums = found[window]
             totals[centres] += sums
-        averages: Double = totals[:, :-1] / np.maximum(totals[:, -1:], TINY)
+        averages: Real = (totals[:, :-1] / np.maximum(totals[:, -1:], TINY)).astype(np.float32)
         return averages
 
-    def joined(self, window: Window, averages: Double) -> tuple[Real, Real]:
+    def joined(self, window: Window, averages: Real) -> tuple[Real, Real]:
         """The two terms of equation (7), both (C, rows, columns)."""
         shape = (window.bottom - window.top, window.right - window.left)
         deviations, feathered = np.zeros((2, len(self._planes), *shape), np.float32)
@@ -160,11 +160,8 @@ class _Mosaic:
             there = (part.rows, part.columns)
             total[there] += part.weight
             norm[there] += np.square(part.weight)
-            for plane, source, average, a in zip(
-                deviations, self._patch(part), feathered, averages[part.centre].tolist(), strict=True
-            ):
-                plane[there] += source * part.weight
-                average[there] += part.weight * np.float32(a)
+            deviations[:, *there] += self._patch(part) * part.weight
+            feathered[:, *there] += averages[part.centre, :, None, None] * part.weight
         deviations -= feathered
         deviations /= np.sqrt(norm)
         feathered /= total

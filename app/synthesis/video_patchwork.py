@@ -28,7 +28,7 @@ from app.synthesis.transitions import Transitions
 Real = NDArray[np.float32]
 Ints = NDArray[np.int64]
 
-STRIP = 32  # rows; the slighter the strips, the less of them is outside of round cells, and the more calls they take
+STRIP = 128  # rows: with slighter strips less is outside of round cells, but the calls take longer than that saves
 TINY = 1e-30  # instead of 0, for a cell that has a part of no pixel
 
 
