@@ -37,6 +37,7 @@ def sky_pan() -> Iterator[Real]:
 METRES = 0.002  # of a pixel: the ripples in the sand are then 10 cm apart
 REFRACTION = 1 - 1 / 1.33  # a ray from straight above is turned by this part of the surface's slope
 GRAVITY, TENSION = 9.81, 7.3e-5  # m/s²; m³/s², surface tension by density
+SLOPE = 0.12  # of the water, root mean square
 SLOWER = 3  # than it went: the camera took 72 frames a second
 SUN = 80  # pixels that its rays, about 40° off the vertical, go on along each axis in the water
 MARGIN = 48  # pixels around the picture from which light and sight may come
@@ -45,16 +46,16 @@ RAYS = 3  # along a pixel's side
 
 def sand_under_water() -> Iterator[Real]:
     """Rippled sand under forty centimetres of clear water in a breeze: the sun draws a net of bright lines."""
-    return _under_water("sand_desert009.png", 352, 96, depth=0.4, slope=0.12, waves=11)
+    return _under_water("sand_desert009.png", 352, 96, depth=0.4, waves=11)
 
 
 def leaves_under_water() -> Iterator[Real]:
     """Fallen leaves on the ground of a shallow pool: each stays where it is, and wavers."""
-    return _under_water("leaves_forest_floor.jpg", 272, 272, depth=0.25, slope=0.12, waves=12)
+    return _under_water("leaves_forest_floor.jpg", 272, 272, depth=0.25, waves=12)
 
 
-def _under_water(name: str, top: int, left: int, *, depth: float, slope: float, waves: int) -> Iterator[Real]:
-    """What lies in this corner of a photograph, under ``depth`` metres of water of this slope, root mean square.
+def _under_water(name: str, top: int, left: int, *, depth: float, waves: int) -> Iterator[Real]:
+    """What lies in this corner of a photograph, under ``depth`` metres of water.
 
     The surface is a sum of travelling waves with the dispersion relation of water, ω² = (g k + τ k³) tanh(k h). Its
     slope bends the sun's light, which gathers in bright lines on the ground, and, at another place, the view of it.
@@ -65,7 +66,7 @@ def _under_water(name: str, top: int, left: int, *, depth: float, slope: float, 
     towards = rng.normal(0.6, 1.1, count)
     omega = np.sqrt((GRAVITY * k + TENSION * k**3) * np.tanh(k * depth))
     phase = rng.uniform(0, 2 * np.pi, count)
-    slopes = slope * np.sqrt(2 / (k * np.sum(1 / k)))
+    slope = SLOPE * np.sqrt(2 / (k * np.sum(1 / k)))
     side = SIDE + 2 * MARGIN
     ground = _photograph(name)[top : top + side, left : left + side]
     ray = (np.arange(RAYS * side) + 0.5) / RAYS - 0.5
@@ -75,7 +76,7 @@ def _under_water(name: str, top: int, left: int, *, depth: float, slope: float, 
 
     def shift(at: Real, t: float) -> Real:
         """Pixels by which rays that pass the surface at rows and columns ``at`` come off the vertical, y then x."""
-        amplitudes = -depth * REFRACTION / METRES * slopes * np.exp(1j * (phase - omega * t))
+        amplitudes = -depth * REFRACTION / METRES * slope * np.exp(1j * (phase - omega * t))
         parts = [amplitudes * each / k for each in (down, across)]
         return np.stack([_waves(METRES * down, METRES * across, part, at) for part in parts])
 

@@ -71,13 +71,13 @@ def figure_view(service: Service, figure: Figure) -> dict[str, Any]:
     groups = [shown(service, exhibit) for exhibit in figure.exhibits]
     pictures = [picture for group in groups for picture in group]
     alike = len({picture.width for picture in pictures}) == 1
+    laid = [pictures] if alike else groups
     if alike:
         columns = _columns([group[0].leads for group in groups], len(pictures))
     return {
         "figure": figure,
-        "groups": [pictures] if alike else groups,
+        "groups": [(group, sum(picture.width for picture in group) <= WIDE) for group in laid],
         "layout": f"of-{columns}" if alike else "mixed",
-        "rows": [sum(picture.width for picture in group) <= WIDE for group in groups],
         "scale": 2 if max(picture.width for picture in pictures) <= SMALL else 1,
     }
 

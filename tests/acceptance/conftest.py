@@ -25,7 +25,6 @@ SAMPLES = ROOT / "samples"
 SCREENSHOTS = Path(__file__).parent / "screenshots"
 PATIENCE = 60.0
 STANDARDS = {"runOnly": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]}
-COLOURS = {"runOnly": {"type": "rule", "values": ["color-contrast", "link-in-text-block"]}}
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -199,11 +198,11 @@ def photograph() -> Path:
 
 
 @pytest.fixture(scope="session")
-def assert_accessible() -> Callable[[Page, str], None]:
-    """Axe finds nothing on a page of this theme. The dark one differs in colours only, and only they are looked at."""
+def assert_accessible() -> Callable[[Page], None]:
+    """Axe finds nothing on a page."""
 
-    def check(page: Page, theme: str) -> None:
-        found = Axe().run(page, options=COLOURS if theme == "dark" else STANDARDS)
+    def check(page: Page) -> None:
+        found = Axe().run(page, options=STANDARDS)
         assert found.violations_count == 0, f"{page.url}: {found.generate_report()}"
 
     return check

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from playwright.sync_api import Page, expect
 
-Check = Callable[[Page, str], None]
+Check = Callable[[Page], None]
 
 THEMES = ("light", "dark")
 ALIKE = {
@@ -69,7 +69,7 @@ def test_axe_finds_no_violation_on_any_page(
             continue
         page.goto(address)
         settle(page)
-        assert_accessible(page, theme)
+        assert_accessible(page)
         screenshot(page, f"{name}-{theme}")
 
 
@@ -99,13 +99,13 @@ def test_refused_forms_and_waiting_rooms_are_accessible(
     page = visitors.visit("/samples/grass_jungle002?width=8192&height=8192&size=free", color_scheme=theme)
     page.get_by_role("button", name="Synthesise").click()
     expect(page.get_by_role("progressbar")).to_be_visible()
-    assert_accessible(page, theme)
+    assert_accessible(page)
     screenshot(page, f"waiting-{theme}")
     page.get_by_role("button", name="Cancel").click()
     expect(page.get_by_role("heading", name="Cancelled")).to_be_visible()
-    assert_accessible(page, theme)
+    assert_accessible(page)
     page.goto("/samples/scene_china?seed=-1")
     page.get_by_role("button", name="Synthesise").click()
     expect(page.locator(".summary")).to_be_visible()
-    assert_accessible(page, theme)
+    assert_accessible(page)
     screenshot(page, f"refused-{theme}")

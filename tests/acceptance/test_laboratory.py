@@ -42,12 +42,12 @@ def test_a_method_is_run_from_its_page(visitors: Any, site: Any, shown_pixels: S
 
 @pytest.mark.parametrize("theme", ["light", "dark"])
 def test_pages_of_the_laboratory_are_accessible(
-    visitors: Any, theme: str, assert_accessible: Callable[[Page, str], None]
+    visitors: Any, theme: str, assert_accessible: Callable[[Page], None]
 ) -> None:
     page = visitors.visit(color_scheme=theme)
     for path in PAGES:
         page.goto(path)
-        assert_accessible(page, theme)
+        assert_accessible(page)
 
 
 def test_pages_of_the_laboratory_fit_a_phone(visitors: Any) -> None:

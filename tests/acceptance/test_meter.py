@@ -78,7 +78,7 @@ def test_its_sentence_is_announced_only_when_it_changes(visitors: Any) -> None:
 @pytest.mark.parametrize("theme", ["light", "dark"])
 @pytest.mark.parametrize("width", [1440, 390])
 def test_its_page_places_every_photograph_and_is_accessible(
-    visitors: Any, site: Any, theme: str, width: int, assert_accessible: Callable[[Page, str], None], screenshot: Any
+    visitors: Any, site: Any, theme: str, width: int, assert_accessible: Callable[[Page], None], screenshot: Any
 ) -> None:
     page = visitors.visit("/structure", color_scheme=theme, viewport={"width": width, "height": 900})
     page.wait_for_load_state("networkidle")
@@ -88,7 +88,7 @@ def test_its_page_places_every_photograph_and_is_accessible(
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     shown = [float(text) for text in page.locator(".photographs .meter-number").all_inner_texts()]
     assert shown == sorted(shown)
-    assert_accessible(page, theme)
+    assert_accessible(page)
     screenshot(page, f"structure-{'phone-' if width == 390 else ''}{theme}")
 
 
