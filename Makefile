@@ -25,10 +25,11 @@ test: lint programs ## everything: lint, types, unit, doctest, API, acceptance a
 	$(WITH_BROWSER) $(BIN)/pytest -n 2 --dist loadfile -m 'not (acceptance or chaos or load)'
 	$(WITH_BROWSER) $(BIN)/pytest tests -m '(acceptance or chaos) and not load'
 
-lint: $(VENV)/.ready-dev ## ruff and mypy
+lint: $(VENV)/.ready-dev node_modules/.ready ## ruff, mypy and eslint
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
+	$(BIN)/node node_modules/eslint/bin/eslint.js static/js
 
 chaos: programs ## only the tests that kill processes
 	$(BIN)/pytest -m chaos
@@ -51,7 +52,7 @@ LOCK_OPTIONS = --quiet --no-config --universal --python-version 3.11 --generate-
 	--no-emit-index-url --custom-compile-command "make lock"
 
 clean: ## remove the environment and caches, not ./data
-	rm -rf $(VENV) build dist *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis .schemathesis
+	rm -rf $(VENV) node_modules build dist *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis .schemathesis
 
 $(BIN)/python:
 	@scripts/check-python "$(PYTHON)"
@@ -68,5 +69,10 @@ $(VENV)/.ready-dev: requirements-dev.lock $(VENV)/.ready
 	@$(PIP) install --quiet --require-hashes -r requirements-dev.lock
 	@touch $@
 
-programs: $(VENV)/.ready-dev
+node_modules/.ready: package.json package-lock.json $(VENV)/.ready-dev
+	@echo "Installing the development tools of npm into node_modules"
+	@PATH="$(CURDIR)/$(BIN):$$PATH" npm ci --silent --no-audit --no-fund --ignore-scripts
+	@touch $@
+
+programs: $(VENV)/.ready-dev node_modules/.ready
 	@scripts/test-packages

@@ -16,8 +16,8 @@ class Meter {
     root.classList.toggle("unknown", root.hidden);
     root.hidden = false;
     this.asking = false;
-    for (const change of ["crop", "change"]) root.closest("form").addEventListener(change, () => this.follow());
-    this.follow();
+    for (const change of ["crop", "change"]) root.closest("form").addEventListener(change, () => this.follow().catch(reportError));
+    this.follow().catch(reportError);
   }
 
   /** What to ask; nothing while the input is not on the screen. */
