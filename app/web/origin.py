@@ -1,6 +1,7 @@
 """Which requests of other sites' pages are refused: those that change something.
 
-Writes are taken from our own pages and from programs. Browsers say where a request comes from; no page makes them lie.
+Writes are taken from our own pages and from programs. Browsers say where a request comes from; no page makes them lie. Behind
+a proxy that rewrites the Host header our own pages look like another site's: the refusal says so to who runs the service.
 """
 
 from urllib.parse import urlsplit
@@ -14,6 +15,7 @@ from app.web.problems import respond
 from app.web.security import API_PREFIX
 
 _READING = {"GET", "HEAD", "OPTIONS"}
+_QUOTED = 100  # characters of a header in a message
 
 
 class CrossOrigin:
@@ -41,8 +43,7 @@ class CrossOrigin:
             }
             await Response(status_code=204, headers=allowed)(scope, receive, send)
         elif method not in _READING and self._foreign(headers):
-            detail = "Another site's page may not change anything here: use this site's own pages, or a program."
-            await respond(Request(scope), 403, detail)(scope, receive, send)
+            await respond(Request(scope), 403, self._reason(headers))(scope, receive, send)
         else:
             await self.app(scope, receive, send)
 
@@ -54,3 +55,14 @@ class CrossOrigin:
         if site is not None:
             return site not in {"same-origin", "none"}
         return origin is not None and urlsplit(origin).netloc != headers.get("host")
+
+    def _reason(self, headers: Headers) -> str:
+        """Say what was compared, so that who set up a proxy in front of this sees which header it spoils."""
+        origin, host = (headers.get(name, "nothing")[:_QUOTED] for name in ("origin", "host"))
+        known = f"it is {self.public_origin}" if self.public_origin else "it is not set"
+        return (
+            "Another site's page may not change anything here: use this site's own pages, or a program. "
+            f"The request's Origin header says {origin}, its Host header says {host}. If both mean this site, a proxy in "
+            "front of it changes the Host header: let the proxy pass it on unchanged, or set MICROTEXTURE_BASE_URL to "
+            f"the address that browsers show ({known})."
+        )

@@ -1,5 +1,7 @@
 """What browsers are told, and what other sites' pages may do."""
 
+from html import unescape
+
 import pytest
 
 RECORD = {"method": "rpn", "inputs": [{"sample": "gravel_gray"}]}
@@ -46,6 +48,40 @@ def test_a_preflight_allows_reading_only(site):
 @pytest.mark.parametrize("path", ["/api/v1/experiments", "/samples", "/experiments/x/delete"])
 def test_another_sites_page_changes_nothing(site, path, headers):
     assert site.client.post(path, json=RECORD, headers=headers).status_code == 403
+
+
+@pytest.mark.parametrize(
+    ("headers", "origin"),
+    [
+        ({"Origin": "http://texture.lan"}, "http://texture.lan"),
+        ({"Origin": "http://texture.lan:8080", "Host": "texture.lan"}, "http://texture.lan:8080"),
+        ({"Sec-Fetch-Site": "cross-site"}, "nothing"),
+        ({"Origin": "https://<script>.example/" + 9999 * "x"}, "https://<script>.example/x"),
+    ],
+)
+def test_a_refused_origin_tells_the_operator_what_to_set(site, headers, origin):
+    """As a page and as a problem: both headers that were compared, and the setting that settles it."""
+    answer = site.client.post("/api/v1/experiments", json=RECORD, headers=headers)
+    assert answer.headers["Content-Type"] == "application/problem+json"
+    page = site.client.post("/experiments/x/delete", headers=headers)
+    assert page.headers["Content-Type"].startswith("text/html")
+    host = headers.get("Host", site.url.removeprefix("http://"))
+    for answer, text in [(answer, answer.json()["detail"]), (page, unescape(page.text))]:
+        assert answer.status_code == 403
+        assert f"Origin header says {origin}" in text
+        assert f"Host header says {host}." in text
+        assert "MICROTEXTURE_BASE_URL" in text
+        assert "it is not set" in text
+        assert len(text) < 3000
+    assert "<script>.example" not in page.text
+
+
+def test_a_public_address_that_does_not_fit_is_named(serve, tmp_path):
+    with serve(tmp_path, base_url="https://texture.example.org/") as site:
+        answer = site.client.post("/api/v1/experiments", json=RECORD, headers={"Origin": "http://texture.lan"})
+        assert answer.status_code == 403
+        assert "MICROTEXTURE_BASE_URL" in answer.json()["detail"]
+        assert "it is https://texture.example.org" in answer.json()["detail"]
 
 
 @pytest.mark.parametrize("sent", [{}, {"Sec-Fetch-Site": "same-origin", "Origin": "{url}"}, {"Origin": "{url}"}])
