@@ -1,14 +1,33 @@
 """What the methods that render a pattern in patches of a texture have in common."""
 
 from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
 
 from app.errors import InvalidInputError
-from app.methods.model import Size, StillParams
+from app.methods.model import Context, Picture, Size, StillParams
+from app.methods.pictures import encode
 from app.synthesis.cell_match import HALF
 
 MOST_WORK = 10**11  # products: a few minutes on two processors
 PRODUCTS_OF_A_PLACE = 16  # that comparing a patch with one of all places takes time for
 SEARCHED_TEXTURE, SEARCHED_PATTERN = (8, 24), (16, 0)  # bytes for each value and for each pixel of them
+
+RESCALE: Any = Field(
+    True,
+    title="Rescale the pattern's colours",
+    description="Give every channel of the pattern the texture's mean and range before they are compared, so that "
+    "dark and light find their like. Off: the colours are compared as they are.",
+)
+
+
+def compared_pattern(pattern: NDArray[np.float32], rescale: bool, peak: int, context: Context) -> Picture:
+    """The pattern as it was compared with the texture, whose ``peak`` it has."""
+    title = "Pattern with the texture's mean and range" if rescale else "Pattern as it is compared"
+    return encode("pattern", title, pattern, peak, context)
 
 
 def pattern_size(sizes: Sequence[Size]) -> tuple[int, int]:

@@ -6,7 +6,14 @@ import numpy as np
 from pydantic import Field
 
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
-from app.methods.matching import pattern_size, refuse_long_search, refuse_other_size, search_bytes
+from app.methods.matching import (
+    RESCALE,
+    compared_pattern,
+    pattern_size,
+    refuse_long_search,
+    refuse_other_size,
+    search_bytes,
+)
 from app.methods.model import Context, Fact, Method, Picture, Size, Slot, Source, StillParams
 from app.methods.options import WHOLE_IN_MEMORY
 from app.methods.patches import BYTES_OF_CELL, LEAST_GRID, cell_colours, refuse_small
@@ -53,12 +60,7 @@ class TransferParams(StillParams):
         "best is taken. More follow the pattern more closely, take longer, and repeat the same places more often. 0: "
         "all places.",
     )
-    rescale: bool = Field(
-        True,
-        title="Rescale the pattern's colours",
-        description="Give every channel of the pattern the texture's mean and range before they are compared, so that "
-        "dark and light find their like. Off: the colours are compared as they are.",
-    )
+    rescale: bool = RESCALE
 
 
 def check(sizes: Sequence[Size], params: TransferParams) -> None:
@@ -118,8 +120,7 @@ def run(sources: Sequence[Source], params: TransferParams, context: Context) -> 
     yield encode("cells", "Cells, coloured by the place of their source", picture, 1, context)
     context.progress("views", 0.96)
     yield encode("average", "Averages of the patches", made.average, peak, context)
-    title = "Pattern with the texture's mean and range" if params.rescale else "Pattern as it is compared"
-    yield encode("pattern", title, pattern, peak, context)
+    yield compared_pattern(pattern, params.rescale, peak, context)
     yield from crops(sources, context)
     context.progress("views", 1.0)
 

@@ -9,7 +9,14 @@ from pydantic import Field
 
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
 from app.methods.films import crop_film
-from app.methods.matching import pattern_size, refuse_long_search, refuse_other_size, search_bytes
+from app.methods.matching import (
+    RESCALE,
+    compared_pattern,
+    pattern_size,
+    refuse_long_search,
+    refuse_other_size,
+    search_bytes,
+)
 from app.methods.model import Context, LoopParams, Method, Picture, Size, Slot, Source
 from app.methods.patches import LEAST_GRID, refuse_small
 from app.methods.pictures import encode, refuse_infinite
@@ -58,6 +65,7 @@ class VideoTransferParams(LoopParams):
         description="Among how many places of the clip, drawn at random, the one that is most like the pattern is "
         "taken for each patch; 0: among all. More follow the pattern more closely and repeat places more often.",
     )
+    rescale: bool = RESCALE
     sharpness: float = sharpness(2)
 
 
@@ -89,7 +97,10 @@ def run(sources: Sequence[Source], params: VideoTransferParams, context: Context
     context.progress("cells", 0)
     cells = jittered_cells(*shape[1:], grid=params.grid, sharpness=params.sharpness, tileable=False, seed=params.seed)
     average = film.mean(0, np.float32)
-    places = _matched(average, pattern, cells, params, replace(context, progress=context.between(0, 0.2)))
+    wanted = _with_channels(pattern.pixels * np.float32(PEAK / pattern.peak), average.shape[2])
+    if params.rescale:
+        wanted = rescaled(wanted, average)
+    places = _matched(average, wanted, cells, params, replace(context, progress=context.between(0, 0.2)))
     transitions = Transitions(
         cells.count, len(film), shape[0], params.interval, loop=params.loop, rng=random(params.seed, IN_TIME)
     )
@@ -102,16 +113,16 @@ def run(sources: Sequence[Source], params: VideoTransferParams, context: Context
         replace(context, progress=context.between(0.86, 0.9)),
     )
     yield average_picture(average, context)
+    yield compared_pattern(wanted, params.rescale, PEAK, context)
     yield from crop_film(clip, replace(context, progress=context.between(0.9, 1)))
     yield encode("crop-2", "Pattern", pattern.pixels, pattern.peak, context)
     context.progress("crop", 1)
 
 
 def _matched(
-    average: Real, pattern: Source, cells: Cells, params: VideoTransferParams, context: Context
+    average: Real, wanted: Real, cells: Cells, params: VideoTransferParams, context: Context
 ) -> NDArray[np.int64]:
     """The place of the clip for every cell, found in the average image."""
-    wanted = rescaled(_with_channels(pattern.pixels, average.shape[2]), average)
     with Team(context.threads) as team:
         matches = match_cells(
             average,
@@ -144,9 +155,9 @@ LEAVES, SMOKE, SKY, SAND = (
 EXPLANATION = Explanation(
     what=(
         "A picture, the pattern, is rendered in the texture of a clip, and moves as the clip does. The pattern is "
-        "first given the mean colour and the range of the clip's average image. Then, as in transfer, every patch "
-        "is taken from the place of the average image that is most like the pattern there, among a few places drawn at "
-        "random.",
+        "first given the mean and the range of the clip's average image, channel by channel; without rescaling it is "
+        "compared as it is. Then, as in transfer, every patch is taken from the place of the average image that is "
+        "most like the pattern there, among a few places drawn at random.",
         "From there on it is the video patchwork: every patch shows the clip at its place, with transitions in time of "
         "its own, and joins its neighbours. The mean is now a local one, that of each patch in the average image.",
     ),

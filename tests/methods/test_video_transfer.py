@@ -9,6 +9,7 @@ from imagecodecs import png_decode
 from app.errors import InvalidInputError
 from app.images.video.reader import read_film
 from app.methods.model import Film, Size, Source
+from app.methods.transfer import TRANSFER
 from app.methods.video_transfer import VIDEO_TRANSFER
 from tests.methods.runs import a_clip, a_crop, run
 
@@ -39,9 +40,44 @@ def test_light_and_dark_are_where_the_pattern_has_them_in_every_frame(tmp_path):
 
 def test_what_the_picture_shows_besides(tmp_path):
     pictures = {made.name: made for made in run(VIDEO_TRANSFER, [a_clip(), a_crop(50, 40)], scratch=tmp_path)}
-    views = ["cube", "cells", "average", "crop", "crop-mp4", "crop-cube", "crop-2"]
+    views = ["cube", "cells", "average", "pattern", "crop", "crop-mp4", "crop-cube", "crop-2"]
     assert list(pictures) == ["texture", "texture-mp4", "preview", *views]
     assert (png_decode(pictures["crop-2"].data) == a_crop(50, 40).pixels).all()
+
+
+def test_the_patterns_colours_are_rescaled_unless_that_is_switched_off(tmp_path):
+    """Grain of deviation 18 at levels of 80 and 160 has nothing as dark as a pattern of 0 and 40: unscaled, all of it
+    is taken from the dark half; rescaled, half of it from the bright one.
+    """
+    dark = np.repeat(np.where(np.arange(40) < 20, 40, 0)[:, None, None], 32, 1).astype(np.float32)
+    pattern = Source(np.repeat(dark, 3, axis=2), 255)
+    means = {}
+    for rescale in (True, False):
+        made = {
+            picture.name: picture
+            for picture in run(VIDEO_TRANSFER, [halves(), pattern], scratch=tmp_path, candidates=0, rescale=rescale)
+        }
+        film = np.stack(list(read_film(made["texture"].data))).astype(float)
+        means[rescale] = film[:, :14].mean(), film[:, 26:].mean()
+        compared = png_decode(made["pattern"].data)
+        if rescale:
+            assert compared.mean() == pytest.approx(png_decode(made["average"].data).mean(), abs=1)
+        else:
+            assert (compared == pattern.pixels).all()
+    assert means[True][0] - means[True][1] > 60
+    assert max(means[False]) < 100
+
+
+def test_a_pattern_of_sixteen_bits_is_the_same_pattern(tmp_path):
+    eight = a_crop(40, 40)
+    deep = Source(eight.pixels * 257, 65535)
+    one, other = (texture([a_clip(), pattern], tmp_path, rescale=False) for pattern in (eight, deep))
+    assert (one == other).all()
+
+
+def test_the_switch_is_that_of_the_transfer_of_pictures():
+    declared = [each.params.model_fields["rescale"] for each in (TRANSFER, VIDEO_TRANSFER)]
+    assert len({(field.title, field.description, field.default) for field in declared}) == 1
 
 
 @pytest.mark.parametrize(("clip", "pattern"), [(1, 3), (3, 1)], ids=["grey clip", "grey pattern"])
