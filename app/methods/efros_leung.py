@@ -13,7 +13,7 @@ from app.methods.pictures import coordinate_colours, crops, encode, refuse_infin
 from app.methods.random_phase import INPUTS
 from app.methods.references import EFROS_LEUNG as EFROS_LEUNG_ARTICLE
 from app.methods.references import IPOL_EFROS_LEUNG
-from app.synthesis.efros_leung import efros_leung, verbatim_share
+from app.synthesis.efros_leung import border_share, efros_leung, verbatim_share
 
 HALF_PATCH = 4
 MOST_WORK = 10**12  # products: a minute or two on two processors
@@ -107,10 +107,12 @@ def run(sources: Sequence[Source], params: EfrosLeungParams, context: Context) -
         threads=context.threads,
         progress=_overall(context),
     )
-    share = Fact(
-        "verbatim", "Pixels copied along with their left or upper neighbour", verbatim_share(grown.copied), "%"
+    border = border_share(grown, size.height, size.width, params.half_patch)
+    shares = (
+        Fact("verbatim", "Pixels copied along with their left or upper neighbour", verbatim_share(grown.copied), "%"),
+        Fact("border", "Pixels drawn from where the window reaches over the crop's border", border, "%"),
     )
-    yield encode("texture", "Texture", grown.texture, peak, context, kind="texture", facts=(share,))
+    yield encode("texture", "Texture", grown.texture, peak, context, kind="texture", facts=shares)
     context.progress("views", 0.97)
     yield from crops(sources, context)
     colours = coordinate_colours(*h.shape[:2])
@@ -136,6 +138,12 @@ EXPLANATION = Explanation(
         "away: edges, bricks and letters come back, as far as a window sees them.",
         "Pixels are filled layer after layer, those with the most known neighbours first, so that every choice rests "
         "on as much as possible. A Gaussian weight lets near neighbours count more than far ones.",
+        "The articles compare the window with whole windows of the crop only. Here a place near the crop's border "
+        "counts too, if the crop holds everything that is already there of the window: what reaches over the border is "
+        "not filled yet, and is not compared. Whole windows alone would leave out a sixth of a crop of 96 × 96 pixels, "
+        "and almost half of one of 64 × 64 with a half-patch of 8. In the figures below 1.5 to 41 % of the pixels come "
+        "from such places: 7 % of the paving, 13 % of the bricks with 9 × 9 pixels and 28 % with 17 × 17, and 41 % of "
+        "the leaves, where growth has gone wrong. Every run says how many.",
         "Each pixel is a pixel of the crop, and the *copy map* shows which: every place of the crop has a colour (see "
         "the key), and every pixel of the texture wears the colour of the place it was taken from. Patches of a smooth "
         "gradient are pieces of the crop copied as they are; confetti is new. The order of growth is shown in grey, "
@@ -146,7 +154,8 @@ EXPLANATION = Explanation(
             r"d(x, y) = \frac{\sum_{k \in K_x} G(k)\, \| u(x + k) - h(y + k) \|^2}{\sum_{k \in K_x} G(k)}, \qquad "
             r"K_x \subset [-n, n]^2",
             r"The distance between the window around the pixel $x$ of the texture $u$ and the one around $y$ in the "
-            r"crop $h$; $K_x$ holds the places already filled, $n$ is the half-patch.",
+            r"crop $h$; $K_x$ holds the places already filled, $n$ is the half-patch. Only places $y$ count for which "
+            r"$y + k$ lies in the crop for all $k \in K_x$.",
         ),
         Formula(
             r"u(x) = h(Y), \quad Y \text{ uniform among } \{ y : d(x, y) \leq (1 + \varepsilon) \min_{y'} d(x, y') \}",

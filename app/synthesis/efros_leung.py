@@ -1,8 +1,11 @@
 """Efros and Leung's non-parametric sampling: a texture that grows from a seed, pixel by pixel, by copying.
 
 The next pixel takes the value of a pixel of the sample, drawn among those whose surroundings look like what is
-already there. Which pixel is next depends on no value, so the whole order is laid down first. Pixels whose windows do
-not contain each other then are computed together: the result is that of the order, one after the other.
+already there. The articles compare whole windows of the sample only; here every pixel of it can be drawn, also one near
+the border, if the sample holds all that is known of the window: its other half may reach beyond.
+
+Which pixel is next depends on no value, so the whole order is laid down first. Pixels whose windows do not contain each
+other then are computed together: the result is that of the order, one after the other.
 
 References
 ----------
@@ -204,3 +207,28 @@ def verbatim_share(copied: Index) -> float:
     along[:, 1:] |= (offset[:, 1:] == offset[:, :-1]).all(2)
     along[1:] |= (offset[1:] == offset[:-1]).all(2)
     return 100 * float(along.mean())
+
+
+def border_share(grown: Grown, height: int, width: int, half_patch: int) -> float:
+    """Per cent of the pixels drawn that came from where the sample holds a part of the window only.
+
+    Parameters
+    ----------
+    grown : Grown
+    height, width : int
+        Of the sample.
+    half_patch : int
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> copied, order = np.moveaxis(np.indices((5, 5)), 0, 2), np.arange(25).reshape(5, 5)
+    >>> border_share(Grown(np.zeros((5, 5, 1)), copied, order), 5, 5, half_patch=1)  # but for rows 2 and 3: 6 of 16
+    62.5
+    """
+    initial = min(SEED_SIDE, grown.order.shape[0]) * min(SEED_SIDE, grown.order.shape[1])
+    drawn = grown.copied[grown.order >= initial]
+    if len(drawn) == 0:
+        return 0.0
+    last = np.array((height, width)) - half_patch - 1
+    return 100 * float(((drawn < half_patch) | (drawn > last)).any(1).mean())

@@ -10,7 +10,7 @@ from pydantic import ValidationError
 from app.errors import InvalidInputError
 from app.methods.efros_leung import EFROS_LEUNG, EfrosLeungParams
 from app.methods.model import Context, Size, Source
-from app.synthesis.efros_leung import efros_leung, verbatim_share
+from app.synthesis.efros_leung import border_share, efros_leung, verbatim_share
 
 
 def crop(height=24, width=30, channels=3, peak=255):
@@ -99,11 +99,15 @@ def test_it_gives_the_texture_the_crop_the_maps_and_the_order(channels):
     assert (by_time[0], by_time[-1]) == (0, 255)
 
 
-def test_the_verbatim_share_is_a_fact_of_the_texture():
+def test_how_much_is_verbatim_and_how_much_is_from_the_border_are_facts_of_the_texture():
     source = crop()
-    (fact,) = pictures(source, seed=1)["texture"].facts
-    assert (fact.name, fact.unit) == ("verbatim", "%")
-    assert fact.value == verbatim_share(efros_leung(source.pixels, seed=1).copied)
+    facts = {fact.name: fact for fact in pictures(source, seed=1, half_patch=3)["texture"].facts}
+    grown = efros_leung(source.pixels, half_patch=3, seed=1)
+    assert {name: (fact.value, fact.unit) for name, fact in facts.items()} == {
+        "verbatim": (verbatim_share(grown.copied), "%"),
+        "border": (border_share(grown, 24, 30, 3), "%"),
+    }
+    assert 0 < facts["border"].value < 100
 
 
 def test_every_colour_of_a_16_bit_texture_is_one_of_the_crop():

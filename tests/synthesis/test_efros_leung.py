@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import ndimage
 
-from app.synthesis.efros_leung import efros_leung, growth_order, verbatim_share
+from app.synthesis.efros_leung import border_share, efros_leung, growth_order, verbatim_share
 from app.synthesis.patch_search import PatchSearch, gaussian_window
 from app.synthesis.team import Team
 
@@ -161,6 +161,29 @@ def test_the_verbatim_share_counts_pixels_of_the_offset_of_the_left_or_upper_nei
     assert verbatim_share(halves) == pytest.approx(100 * 46 / 48)
     confetti = np.random.default_rng(0).permutation(48 * 100).reshape(-1, 2)[:48].reshape(6, 8, 2)
     assert verbatim_share(confetti) == 0
+
+
+@pytest.mark.parametrize(("size", "n"), [((20, 23), 2), ((9, 30), 4), ((11, 9), 4)])
+def test_the_border_share_counts_pixels_drawn_whose_windows_the_sample_does_not_hold(size, n):
+    """Counted one by one; and what is known of such a window lies in the sample, or it could not be compared."""
+    grown = efros_leung(sample(*size), 24, 27, half_patch=n, seed=2)
+    when = np.pad(grown.order, n, constant_values=grown.order.size)
+    offsets = np.arange(-n, n + 1)
+    reaching, drawn = 0, 0
+    for y, x in np.ndindex(24, 27):
+        if grown.order[y, x] >= 9:
+            known = when[y : y + 2 * n + 1, x : x + 2 * n + 1] < grown.order[y, x]
+            rows, columns = (at + offsets for at in grown.copied[y, x])
+            inside = ((rows >= 0) & (rows < size[0]))[:, None] & ((columns >= 0) & (columns < size[1]))
+            assert inside[known].all()
+            reaching += not inside.all()
+            drawn += 1
+    assert 0 < reaching <= drawn
+    assert border_share(grown, *size, n) == pytest.approx(100 * reaching / drawn)
+
+
+def test_nothing_is_drawn_where_the_first_pixels_are_all():
+    assert border_share(efros_leung(sample(), 3, 2, seed=1), 20, 23, 4) == 0
 
 
 def test_a_sample_that_is_smaller_than_the_window_is_refused():
