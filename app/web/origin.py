@@ -1,7 +1,7 @@
 """Which requests of other sites' pages are refused: those that change something.
 
-Writes are taken from our own pages and from programs. Browsers say where a request comes from; no page makes them lie. Behind
-a proxy that rewrites the Host header our own pages look like another site's: the refusal says so to who runs the service.
+Writes are taken from our own pages and from programs. Browsers say where a request comes from; no page makes them lie.
+Behind a proxy that changes the Host header our own pages look like another site's: the refusal says so.
 """
 
 from urllib.parse import urlsplit
@@ -62,7 +62,7 @@ class CrossOrigin:
         known = f"it is {self.public_origin}" if self.public_origin else "it is not set"
         return (
             "Another site's page may not change anything here: use this site's own pages, or a program. "
-            f"The request's Origin header says {origin}, its Host header says {host}. If both mean this site, a proxy in "
-            "front of it changes the Host header: let the proxy pass it on unchanged, or set MICROTEXTURE_BASE_URL to "
-            f"the address that browsers show ({known})."
+            f"The request's Origin header says {origin}, its Host header says {host}. If both mean this site, a proxy "
+            "in front of it changes the Host header: let the proxy pass it on unchanged, or set "
+            f"MICROTEXTURE_BASE_URL to the address that browsers show ({known})."
         )

@@ -61,12 +61,12 @@ def test_another_sites_page_changes_nothing(site, path, headers):
 )
 def test_a_refused_origin_tells_the_operator_what_to_set(site, headers, origin):
     """As a page and as a problem: both headers that were compared, and the setting that settles it."""
-    answer = site.client.post("/api/v1/experiments", json=RECORD, headers=headers)
-    assert answer.headers["Content-Type"] == "application/problem+json"
+    problem = site.client.post("/api/v1/experiments", json=RECORD, headers=headers)
+    assert problem.headers["Content-Type"] == "application/problem+json"
     page = site.client.post("/experiments/x/delete", headers=headers)
     assert page.headers["Content-Type"].startswith("text/html")
     host = headers.get("Host", site.url.removeprefix("http://"))
-    for answer, text in [(answer, answer.json()["detail"]), (page, unescape(page.text))]:
+    for answer, text in [(problem, problem.json()["detail"]), (page, unescape(page.text))]:
         assert answer.status_code == 403
         assert f"Origin header says {origin}" in text
         assert f"Host header says {host}." in text
