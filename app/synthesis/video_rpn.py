@@ -14,7 +14,8 @@ pixels of the bundled sky and smoke the mean square difference between frames is
 the jump, 0.9 and 0.9 without; that of second differences 102 and 49 against 1.2 and 1.3.)
 
 A larger or longer film is made from the extended spot, see `app.synthesis.spot`; what does not change with time is kept
-out of the window along time, so that what stands still does so for as long.
+out of the window along time, so that what stands still does so for as long. One factor at the end gives the whole film
+the clip's variance, the mean over the channels.
 
 References
 ----------
@@ -23,6 +24,7 @@ Galerne, Gousseau, Morel, "Random Phase Textures: Theory and Synthesis", IEEE TI
 """
 
 from collections.abc import Callable, Iterator
+from math import sqrt
 from typing import Any
 
 import numpy as np
@@ -31,12 +33,11 @@ from numpy.typing import NDArray
 
 from app.synthesis.periodic import SmoothSpectrum
 from app.synthesis.spectral import random_spectrum
-from app.synthesis.spot import Profile, make_spot, window
+from app.synthesis.spot import Profile, Spot, fade, window
 from app.synthesis.spot_noise import transform
 from app.synthesis.team import Team
 from app.synthesis.video_phase import pair, rows_of_phase
-
-BAND = 2  # rows of the spectrum on either side of k₁ = 0 that its slice through time is the mean of
+from app.synthesis.video_power import FilmPower
 
 Complex = NDArray[np.complex64]
 Real = NDArray[np.float32]
@@ -106,18 +107,23 @@ class MovingField:
         spectrum = self._of_frames(film)
         jump = spectrum[:, 0] - spectrum[:, -1]
         if film.shape[:3] == shape:
-            self._in_time(spectrum, shape[2], ("random phase", 0.2, 1.0), jump=jump, randomise=True)
+            made = self._in_time(spectrum, shape[2], ("random phase", 0.2, 1.0), jump=jump, randomise=True)
+            gain = 1.0
         else:
-            self._in_time(spectrum, film.shape[2], ("periodic", 0.2, 0.4), jump=jump)
+            own = self._in_time(spectrum, film.shape[2], ("periodic", 0.2, 0.4), jump=jump)
             spectrum, still = self._extended(spectrum, film.shape[2])
-            self._in_time(spectrum, shape[2], ("random phase", 0.6, 1.0), still=still, randomise=True)
-        self._spectrum = spectrum
+            made = self._in_time(spectrum, shape[2], ("random phase", 0.6, 1.0), still=still, randomise=True)
+            gain = sqrt(own.variance / made.variance) if made.variance > 0 else 1.0
+        self._spectrum, self._gain = spectrum, np.float32(gain)
+        self.power, self.power_in_time = (power * np.float32(gain**2) for power in (made.power, made.in_time))
+        self.still = made.still
 
     def frames(self) -> Iterator[Real]:
         """Frame by frame, (height, width, C); values may lie outside the film's range."""
         mean = self.mean.astype(np.float32)[:, None, None]
         for index in range(self.shape[0]):
             planes: Real = scipy.fft.irfft2(self._spectrum[:, index], s=self.shape[1:], workers=self._team.threads)
+            planes *= self._gain
             planes += mean
             yield planes.transpose(1, 2, 0)
 
@@ -149,15 +155,15 @@ class MovingField:
         jump: Complex | None = None,
         still: Complex | None = None,
         randomise: bool = False,
-    ) -> None:
+    ) -> FilmPower:
         """Go to frequencies in time and back, in place, row by row of the frames' spectra.
 
-        ``jump`` (C, H, columns) is taken out; ``still``, of the same shape, is added to every frame; with ``randomise``
-        the phase becomes random, and the mean 0.
+        ``jump`` (C, H, columns) is taken out; ``still``, of the same shape, is added to every frame; the mean becomes 0
+        and, with ``randomise``, the phase random.
         """
         _, frames, height, _ = spectrum.shape
         flat = random_spectrum(height, width, self._seed) if randomise else None
-        measure = _Measure(spectrum.shape[1:], width) if randomise else None
+        measure = FilmPower(spectrum.shape[1:], width)
 
         def transform_rows(row: int) -> None:
             rows = pair(row, height)
@@ -169,36 +175,39 @@ class MovingField:
                     block -= smooth[channel]
                 if still is not None:
                     block[0] += frames * still[channel, rows]
-                if phase is not None and measure is not None:
-                    if row == 0:
-                        block[0, 0, 0] = 0
-                    measure(row, rows, block)
+                if row == 0:
+                    block[0, 0, 0] = 0
+                measure(row, rows, block)
+                if phase is not None:
                     block *= phase
                 planes[:, rows] = scipy.fft.ifft(block, axis=0, overwrite_x=True, workers=1)
 
         self._run(transform_rows, height // 2 + 1, stage)
-        if measure is not None:
-            self.power, self.power_in_time, self.still = measure.power, measure.in_time, measure.still
+        return measure
 
     def _extended(self, spectrum: Complex, width: int) -> tuple[Complex, Complex]:
         """Spectra of the extended spot's frames, (C, frames, height, columns), and of what stands still in it."""
         channels, count, high, _ = spectrum.shape
         frames, height, across = self.shape
-        fade = window(count, self._alpha, self._profile) if frames > count else np.ones(count)
+        phi = window(count, self._alpha, self._profile) if frames > count else np.ones(count)
         # What stands still is the mean that leaves nothing of it in the rest, once that is faded in and out.
-        weights = (fade / fade.sum()).astype(np.float32)
+        weights = (phi / phi.sum()).astype(np.float32)
         average = np.einsum("cthw,t->chw", spectrum, weights)
-        gains = (fade * np.sqrt(frames / count)).astype(np.float32)
+        gains = (phi * np.sqrt(frames / count)).astype(np.float32)
+        wider = np.float32(sqrt(height * across / (high * width)))
         extended = np.zeros((channels, frames, height, across // 2 + 1), np.complex64)
         top = (frames - count) // 2
 
         def spread(planes: Complex) -> tuple[Complex, NDArray[np.float64]]:
             """A frame's spectrum at the texture's size, but for its mean, and this."""
             p: Real = scipy.fft.irfft2(planes, s=(high, width), workers=1)
-            spot = make_spot(p, p.mean((1, 2), dtype=np.float64), height, across, self._alpha, self._profile)
-            spread = np.stack([transform(plane, spot) for plane in spot.planes])
+            mean = p.mean((1, 2), dtype=np.float64)
+            p -= mean.astype(np.float32)[:, None, None]
+            fade(p, height, across, self._alpha, self._profile)
+            p *= wider
+            spread = np.stack([transform(plane, Spot(p, mean, height, across)) for plane in p])
             spread[:, 0, 0] = 0
-            return spread, spot.mean
+            return spread, mean
 
         def spread_frame(index: int) -> None:
             frame, mean = spread(spectrum[:, index] - average)
@@ -207,37 +216,6 @@ class MovingField:
 
         self._run(spread_frame, count, ("spot", 0.4, 0.6))
         return extended, spread(average)[0]
-
-
-class _Measure:
-    """Sums of the squared modulus of a film's half spectrum, which it is given row by row from several threads."""
-
-    def __init__(self, shape: tuple[int, ...], width: int) -> None:
-        frames, height, columns = shape
-        self.power, self._still = (np.zeros((height, columns), np.float32) for _ in range(2))
-        self._band = np.zeros((min(BAND, height // 2) + 1, frames, columns), np.float32)
-        self._width = width
-
-    def __call__(self, row: int, rows: list[int], block: Complex) -> None:
-        squares = block.real**2 + block.imag**2
-        self.power[rows] += squares.sum(0)
-        self._still[rows] += squares[0]
-        if row < len(self._band):
-            self._band[row] += squares.sum(1)
-
-    @property
-    def in_time(self) -> Real:
-        total: Real = self._band.sum(0)
-        return total
-
-    @property
-    def still(self) -> float:
-        twice = np.full(self.power.shape[1], 2.0)
-        twice[0] = 1
-        if self._width % 2 == 0:
-            twice[-1] = 1
-        whole = float((self.power @ twice).sum())
-        return float((self._still @ twice).sum()) / whole if whole else 1.0
 
 
 def video_rpn(

@@ -36,7 +36,7 @@ def plain_bump(n, alpha):
 
 
 def plain(h, noise):
-    """RPN and ADSN by the letter of the articles."""
+    """RPN and ADSN by the letter of the articles, and the extended spot with the variance of p."""
     p = plain_periodic(h.astype(np.float64)) if noise.periodic else h.astype(np.float64)
     (rows, columns), mean = h.shape[:2], p.mean((0, 1))
     spot = np.zeros((noise.height, noise.width, h.shape[2]))
@@ -44,7 +44,7 @@ def plain(h, noise):
     across = plain_bump(columns, noise.alpha) if noise.width > columns else np.ones(columns)
     top, left = (noise.height - rows) // 2, (noise.width - columns) // 2
     spot[top : top + rows, left : left + columns] = (p - mean) * down[:, None, None] * across[None, :, None]
-    spot *= np.sqrt(noise.height * noise.width / (rows * columns))
+    spot *= np.sqrt(p.var((0, 1)).sum() / spot.var((0, 1)).sum())
     half = random_spectrum(noise.height, noise.width, noise.seed, noise.rayleigh).astype(np.complex128)
     half[0, 0] = 0
     factors = np.fft.fft2(np.fft.irfft2(half, s=(noise.height, noise.width)))
