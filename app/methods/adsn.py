@@ -7,6 +7,8 @@ from app.methods.model import Method
 from app.methods.random_phase import INPUTS, RandomPhaseParams, check, run, toroidal
 from app.methods.references import IPOL_RPN, PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
 
+SINUSOIDS = (("two_sinusoids", "0,0,256,256"),)
+
 EXPLANATION = Explanation(
     what=(
         "Throw copies of a spot onto a plane at random and add them up: that is a discrete spot noise. With ever more "
@@ -52,13 +54,11 @@ EXPLANATION = Explanation(
         Figure(
             "Two frequencies only",
             "A drawing, and where the difference shows: RPN shifts the two sinusoids, ADSN makes one of them weak, "
-            "another one for each seed.",
+            "another one for each seed. The drawing repeats by itself, so its periodic component is not taken.",
             (
-                Exhibit("rpn", (("two_sinusoids", "0,0,256,256"),), {"seed": 1}),
+                Exhibit("rpn", SINUSOIDS, {"seed": 1, "periodic": False}),
                 *(
-                    Exhibit(
-                        "adsn", (("two_sinusoids", "0,0,256,256"),), {"seed": seed}, ("texture",), f"ADSN, seed {seed}"
-                    )
+                    Exhibit("adsn", SINUSOIDS, {"seed": seed, "periodic": False}, ("texture",), f"ADSN, seed {seed}")
                     for seed in (5, 15)
                 ),
             ),

@@ -19,8 +19,9 @@ EXPLANATION = Explanation(
         "differences between their phases. The crop is replaced by its periodic component first, so that the jump "
         "between its opposite borders does not come back as a cross of streaks, and for a larger texture by its "
         "extended spot.",
-        "That is all: two Fourier transforms, whatever the sample. There is nothing to converge and nothing to go "
-        "wrong, every seed gives another texture of the same kind, and each of them tiles without a seam.",
+        "That is all: of every channel two Fourier transforms of the texture's size, there and back, and for a larger "
+        "texture one more of the crop's size, for its periodic component. There is nothing to converge and nothing to "
+        "go wrong, every seed gives another texture of the same kind, and each of them tiles without a seam.",
     ),
     formulas=(
         Formula(
@@ -29,9 +30,16 @@ EXPLANATION = Explanation(
             r"and zero at the origin, so that the mean stays.",
         ),
         Formula(
-            r"\tilde{h} = m + \sqrt{\frac{M_2 N_2}{M_1 N_1}}\, \varphi_\alpha \, (p - m)",
+            r"\tilde{h} = m + g\, \varphi_\alpha \, (p - m), \qquad g \approx \sqrt{\frac{M_2 N_2}{M_1 N_1}}",
             r"The extended spot: the periodic component $p$ of the $M_1 \times N_1$ crop, with its mean $m$, pasted "
             r"into an image of $M_2 \times N_2$ pixels under a window $\varphi_\alpha$ of mean square 1.",
+        ),
+        Formula(
+            r"g^2 = \frac{\sum_c \operatorname{Var}(p_c)}{\sum_c \operatorname{Var}(\varphi_\alpha\, (p_c - m_c))}",
+            r"The articles take the root of the ratio of the areas for $g$, which keeps the variance on average over "
+            r"all places of the window. This $g$ keeps that of the crop at hand: the variance of the texture, the mean "
+            r"over its channels $c$, is that of $p$ exactly. (The variances are over the crop above, and below over "
+            r"the whole texture, which is 0 around the window.)",
         ),
     ),
     fails=(
@@ -41,6 +49,12 @@ EXPLANATION = Explanation(
         "A texture has no places: a crop whose grain or light changes from one to another comes back as a mixture of "
         "all, or with large stains. A steady slope of light is taken out with the smooth component; of other changes "
         "crop a smaller, homogeneous region.",
+        "For a larger texture the window makes the middle of the crop count more than its border. One factor for all "
+        "channels sets the contrast right; how the channels compare stays as the crop has it under the window. In "
+        "the suggested crops of the bundled photographs the variance of a single channel is off by 3 % at most at the "
+        "default, and by 21 % where the window is narrowest ($\\alpha = 0.5$, “gaussian”); in crops of 80 × 64 pixels "
+        "by 5 % and 37 %, both of wooden boards, and the colours are a little others. A larger crop or a smaller "
+        "$\\alpha$ helps.",
     ),
     figures=(
         Figure(
