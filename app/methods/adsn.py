@@ -4,7 +4,8 @@ from functools import partial
 
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
 from app.methods.model import Method
-from app.methods.random_phase import INPUTS, RandomPhaseParams, check, run, toroidal
+from app.methods.options import not_extended
+from app.methods.random_phase import INPUTS, OUTPUTS, RandomPhaseParams, check, run, toroidal
 from app.methods.references import IPOL_RPN, PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
 
 SINUSOIDS = (("two_sinusoids", "0,0,256,256"),)
@@ -85,6 +86,8 @@ ADSN = Method(
     explanation=EXPLANATION,
     check=check,
     run=partial(run, rayleigh=True),
+    outputs=OUTPUTS,
     toroidal=toroidal,
     phase=True,
+    idle=not_extended,
 )

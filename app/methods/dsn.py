@@ -1,6 +1,6 @@
 """`dsn`: discrete spot noise."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from math import ceil
 from typing import Literal
 
@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from app.errors import InvalidInputError
+from app.methods.announced import shown_inputs, texture, views
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
 from app.methods.model import Context, Fact, Method, Picture, Progress, Size, Source
-from app.methods.options import WHOLE_IN_MEMORY, SpotParams
+from app.methods.options import WHOLE_IN_MEMORY, SpotParams, not_extended
 from app.methods.pictures import crops, encode, refuse_infinite
 from app.methods.random_phase import INPUTS
 from app.methods.references import IPOL_RPN, PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES, SPOT_NOISE
@@ -107,6 +108,15 @@ def run(sources: Sequence[Source], params: DsnParams, context: Context) -> Itera
     context.progress("points", 0.9)
     yield _points(counts(height, width, params.order, params.seed), context)
     context.progress("points", 1.0)
+
+
+def idle(sizes: Sequence[Size], params: DsnParams) -> Mapping[str, str]:
+    """The radius of a spot that is the sample, and how a sample fades out that is not the spot."""
+    if params.spot == "sample":
+        words = "the spot is the sample, as it is; take the disc or the Gaussian as spot, or leave it out."
+        return {**not_extended(sizes, params), "radius": words}
+    words = f"the spot is no sample, but a {params.spot}; take the sample as spot, or leave it out."
+    return dict.fromkeys(("alpha", "window"), words)
 
 
 def _points(drawn: Counts, context: Context) -> Picture:
@@ -221,6 +231,18 @@ EXPLANATION = Explanation(
     ),
 )
 
+_SPOT = ("spot", "radius", "alpha", "window")
+OUTPUTS = (
+    texture(of=("order", *_SPOT)),
+    *(
+        texture(name, ("convergence", *_SPOT), lambda params, inputs: params.convergence, "“Convergence” is on")
+        for name in (*(f"dsn-{order}" for order in ORDERS), "adsn")
+    ),
+    *shown_inputs(),
+    *views("spot", of=_SPOT),
+    *views("points", of=("order",)),
+)
+
 DSN = Method(
     name="dsn",
     title="Discrete spot noise (DSN)",
@@ -231,5 +253,7 @@ DSN = Method(
     explanation=EXPLANATION,
     check=check,
     run=run,
+    outputs=OUTPUTS,
+    idle=idle,
     most_pixels=WHOLE_IN_MEMORY,
 )

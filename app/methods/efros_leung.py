@@ -7,6 +7,7 @@ import numpy as np
 from pydantic import Field
 
 from app.errors import InvalidInputError
+from app.methods.announced import shown_inputs, texture, views
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
 from app.methods.model import Context, Fact, Method, Picture, Progress, Size, Source, StillParams
 from app.methods.pictures import coordinate_colours, crops, encode, refuse_infinite
@@ -243,6 +244,7 @@ EFROS_LEUNG = Method(
     explanation=EXPLANATION,
     check=check,
     run=run,
+    outputs=(texture(), *shown_inputs(), *views("copy-map"), *views("copy-map-key", of=()), *views("order")),
     size=default_size,
     toroidal=lambda params: False,
 )

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from app.errors import InvalidInputError
+from app.methods.announced import Announced, shown_inputs, texture, views
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
 from app.methods.model import Context, Fact, Method, Picture, Size, Source, StillParams
 from app.methods.options import ADD_SMOOTH, ADVANCED, refuse_other_size
@@ -270,6 +271,24 @@ EXPLANATION = Explanation(
     ),
 )
 
+_MATCHED = "scales", "orientations", "edges"
+_HISTORY = "iterations", *_MATCHED
+
+
+def _iteration(number: int) -> Announced:
+    name, words = f"iteration-{number}", f"“Iterations” is more than {number}"
+    return Announced(name, of=_HISTORY, given=lambda params, inputs: params.iterations > number, condition=words)
+
+
+OUTPUTS = (
+    texture(),
+    *shown_inputs(),
+    *views("noise", of=("edges",)),
+    *map(_iteration, (1, 2, 4, 8, 16)),
+    *views("crop-bands", of=_MATCHED),
+    *views("texture-bands", of=_HISTORY),
+)
+
 HEEGER_BERGEN = Method(
     name="heeger-bergen",
     title="Heeger–Bergen (pyramid histograms)",
@@ -280,5 +299,6 @@ HEEGER_BERGEN = Method(
     explanation=EXPLANATION,
     check=check,
     run=run,
+    outputs=OUTPUTS,
     toroidal=lambda params: not params.add_smooth,
 )

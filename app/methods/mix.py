@@ -1,7 +1,7 @@
 """`mix`: barycentres of Gaussian textures."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,9 +9,10 @@ from pydantic import Field, field_validator
 
 from app.errors import InvalidInputError
 from app.images.png import PngWriter, encode_png
+from app.methods.announced import Announced, Condition, from_inputs, shown_inputs, texture
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
 from app.methods.model import Context, Method, Picture, Size, Slot, Source
-from app.methods.options import WHOLE_IN_MEMORY, SpotParams
+from app.methods.options import WHOLE_IN_MEMORY, SpotParams, not_extended
 from app.methods.pictures import crops, refuse_infinite
 from app.methods.references import GAUSSIAN_MIXING, PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
 from app.methods.several import alike
@@ -20,6 +21,7 @@ from app.synthesis.levels import Levels
 from app.synthesis.mixing import Mixture
 from app.synthesis.team import Team
 
+MOST_STEPS, FURTHER = 16, 2  # of the path; samples beside the first two
 PANEL = 512  # pixels of each side that a step of the path shows in the strip
 NO_NUMBERS = "must be numbers from 0 on with commas between them, such as 0.3,0.7, and not all of them 0"
 
@@ -37,7 +39,7 @@ class MixParams(SpotParams):
     strip: int = Field(
         8,
         ge=0,
-        le=16,
+        le=MOST_STEPS,
         title="Steps of the path",
         description="How many textures to make along the path from the first sample (ρ = 0) to the second (ρ = 1), "
         "beside the one of the given weights; 0 for none. A path needs two samples: with more of them, each one's own "
@@ -75,6 +77,12 @@ def check(sizes: Sequence[Size], params: MixParams) -> None:
             "A path has two ends: take 2 steps or more, or 0 to make no path.",
             "parameters.strip",
         )
+
+
+def idle(sizes: Sequence[Size], params: MixParams) -> Mapping[str, str]:
+    """The extension's parameters where nothing is extended, and a path's where there is none."""
+    words = f"a path needs two samples, and there are {len(sizes)}; leave the steps out."
+    return {**not_extended(sizes, params), **({"strip": words} if len(sizes) > 2 else {})}
 
 
 class _Strip:
@@ -244,6 +252,28 @@ EXPLANATION = Explanation(
     ),
 )
 
+_PATH, _WEIGHED = ("alpha", "window", "strip"), ("alpha", "window", "weights")
+
+
+def _holds(step: int) -> Condition:
+    """The condition that there is a path that has this step, from 1."""
+    return lambda params, inputs: inputs == 2 and params.strip >= step
+
+
+OUTPUTS = (
+    texture(of=_WEIGHED),
+    *shown_inputs(2 + FURTHER, least=2),
+    *(
+        texture(f"mix-{step}", _PATH, _holds(step), f"there are two inputs and {step} “Steps of the path” or more")
+        for step in range(1, MOST_STEPS + 1)
+    ),
+    *(
+        texture(f"sample-{number}", _WEIGHED, from_inputs(least), f"there are {least} inputs or more")
+        for number, least in ((1, 3), (2, 3), (3, 3), (4, 4))
+    ),
+    Announced("strip", of=_PATH, given=_holds(1), condition="there are two inputs and some “Steps of the path”"),
+)
+
 MIX = Method(
     name="mix",
     title="Mixture of textures",
@@ -257,7 +287,9 @@ MIX = Method(
     explanation=EXPLANATION,
     check=check,
     run=run,
+    outputs=OUTPUTS,
+    idle=idle,
     most_pixels=WHOLE_IN_MEMORY,
-    more=2,
+    more=FURTHER,
     phase=True,
 )

@@ -4,7 +4,7 @@ A method is declared once; its form, its API schema, its command line options an
 """
 
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Literal, Protocol
@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
+from app.methods.announced import Announced
 from app.methods.explanation import Explanation, Reference
 
 MAX_SEED = 2**53 - 1  # the largest whole number that JSON readers in JavaScript keep exactly
@@ -198,6 +199,8 @@ class Method:
     run : callable ``(sources, params, context) -> iterator of Picture``
         Yields its pictures as they are made, the main one, ``texture``, first; what is not asked for is not computed.
         Among them is ``crop``, and ``crop-2``, … for further inputs (see `app.methods.pictures.crops`).
+    outputs : tuple of Announced
+        Every picture that it may yield, in that order.
     more : int
         How many further inputs like the last one it takes.
     size : callable ``(sizes) -> (width, height)``
@@ -212,6 +215,8 @@ class Method:
     memory : callable ``(sizes, params) -> int``, optional
         Bytes that a run needs at its peak beside the interpreter, for one whose need grows with what is asked for;
         widths, heights and frames are filled in.
+    idle : callable ``(sizes, params) -> mapping``, optional
+        Parameters that change nothing with these others, each with when they do and what to do, in words.
     """
 
     name: str
@@ -223,12 +228,14 @@ class Method:
     explanation: Explanation
     check: Callable[[Sequence[Size], Any], None]
     run: Callable[[Sequence[Source], Any, Context], Iterator[Picture]]
+    outputs: tuple[Announced, ...]
     more: int = 0
     size: Callable[[Sequence[Size]], tuple[int, int]] = first_size
     toroidal: Callable[[Any], bool] = lambda params: True
     most_pixels: int | None = None
     phase: bool = False
     memory: Callable[[Sequence[Size], Any], int] | None = None
+    idle: Callable[[Sequence[Size], Any], Mapping[str, str]] = lambda sizes, params: {}
 
     def slot(self, index: int) -> Slot:
         """The slot of an input, from 0; further inputs are like the last one."""

@@ -6,6 +6,7 @@ import numpy as np
 from pydantic import Field
 
 from app.errors import InvalidInputError
+from app.methods.announced import shown_inputs, texture, views
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
 from app.methods.model import MAX_SEED, Context, Method, Picture, Size, Slot, Source, StillParams
 from app.methods.options import WHOLE_IN_MEMORY
@@ -167,6 +168,15 @@ MODULUS_PHASE = Method(
     explanation=EXPLANATION,
     check=check,
     run=run,
+    outputs=(
+        texture(),
+        texture("other"),
+        *shown_inputs(2, least=2),
+        *views("modulus", deep=False),
+        *views("phase"),
+        *views("modulus-2", deep=False),
+        *views("phase-2"),
+    ),
     most_pixels=WHOLE_IN_MEMORY,
     size=common_size,
     toroidal=lambda params: False,

@@ -1,5 +1,6 @@
 """Parameters that several methods share."""
 
+from collections.abc import Sequence
 from typing import Literal
 
 from pydantic import Field
@@ -34,6 +35,9 @@ class SpotParams(StillParams):
     )
 
 
+NOT_EXTENDED = "the crop fades out only in a texture that is larger than it; ask for a larger one, or leave it out"
+NO_BAND = "with α = 0 there is no band in which the crop fades out; take another α, or leave it out"
+
 ADD_SMOOTH = Field(
     False,
     title="Add the smooth component",
@@ -41,6 +45,16 @@ ADD_SMOOTH = Field(
     "back in afterwards. Only for a texture of the crop's own size; it then no longer tiles without a seam.",
     json_schema_extra=ADVANCED,
 )
+
+
+def not_extended(sizes: Sequence[Size], params: SpotParams) -> dict[str, str]:
+    """Say of the extension's parameters that they are idle where the texture is larger than no crop on any axis."""
+    width, height, frames = params.width, params.height, getattr(params, "frames", None)
+    for size in sizes:
+        asked = ((width, size.width), (height, size.height), (frames, size.frames))
+        if any(side and side > own for side, own in asked):
+            return {"window": f"{NO_BAND}."} if params.alpha == 0 else {}
+    return dict.fromkeys(("alpha", "window"), f"{NOT_EXTENDED}.")
 
 
 def refuse_other_size(size: Size, width: int, height: int) -> None:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from app.images.png import PngWriter
+from app.methods.announced import shown_inputs, texture, views
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
 from app.methods.model import Context, Fact, Method, Picture, Progress, Size, Source, StillParams
 from app.methods.options import ADVANCED
@@ -261,6 +262,7 @@ PATCHWORK = Method(
     explanation=EXPLANATION,
     check=check,
     run=run,
+    outputs=(texture(), *views("cells", "sources"), *shown_inputs()),
     toroidal=lambda params: params.tileable,
     memory=memory,
 )

@@ -9,6 +9,7 @@ from pydantic import Field as Option
 
 from app.errors import InvalidInputError
 from app.images.png import PngWriter
+from app.methods.announced import shown_inputs, texture, views
 from app.methods.model import Context, Picture, Size, Slot, Source
 from app.methods.options import ADD_SMOOTH, ADVANCED, SpotParams, refuse_other_size
 from app.methods.pictures import log_modulus, refuse_infinite
@@ -174,4 +175,12 @@ def toroidal(params: RandomPhaseParams) -> bool:
     return not params.add_smooth
 
 
+OUTPUTS = (
+    texture(),
+    *shown_inputs(),
+    *views("periodic", "smooth", of=()),
+    *views("spot", of=("alpha", "window", "periodic")),
+    *views("input-spectrum", of=("periodic",), deep=False),
+    *views("output-spectrum", of=("alpha", "window", "periodic", "add_smooth"), deep=False),
+)
 INPUTS = (Slot("sample", "Sample", "A photograph; crop a homogeneous region of it."),)

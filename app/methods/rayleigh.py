@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from app.errors import InvalidInputError
+from app.methods.announced import shown_inputs, texture, views
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
 from app.methods.model import Context, Fact, Method, Picture, Progress, Size, Source, StillParams
 from app.methods.options import WHOLE_IN_MEMORY
@@ -143,5 +144,13 @@ RAYLEIGH = Method(
     explanation=EXPLANATION,
     check=check,
     run=run,
+    outputs=(
+        texture(),
+        *shown_inputs(),
+        *views("periodic"),
+        texture("rpn"),
+        texture("adsn"),
+        *views("input-spectrum", "output-spectrum", deep=False),
+    ),
     most_pixels=WHOLE_IN_MEMORY,
 )

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from app.methods.announced import shown_inputs, texture, views
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
 from app.methods.model import Context, Fact, Method, Picture, Size, Source, StillParams
 from app.methods.options import WHOLE_IN_MEMORY
@@ -209,6 +210,7 @@ TEXTON = Method(
     explanation=EXPLANATION,
     check=check,
     run=run,
+    outputs=(texture(), *shown_inputs(), *views("texton", "texton-log", of=()), *views("spot")),
     most_pixels=WHOLE_IN_MEMORY,
     phase=True,
 )

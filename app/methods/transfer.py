@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator, Sequence
 import numpy as np
 from pydantic import Field
 
+from app.methods.announced import shown_inputs, texture, views
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
 from app.methods.matching import (
     RESCALE,
@@ -279,6 +280,12 @@ TRANSFER = Method(
     explanation=EXPLANATION,
     check=check,
     run=run,
+    outputs=(
+        texture(),
+        *views("cells", "average"),
+        *views("pattern", of=("rescale",)),
+        *shown_inputs(2, least=2),
+    ),
     size=pattern_size,
     toroidal=lambda params: False,
     most_pixels=WHOLE_IN_MEMORY,

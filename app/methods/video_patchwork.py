@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from app.methods.announced import FILMS, SHOWN_CLIP, views
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
 from app.methods.films import crop_film
 from app.methods.model import Context, Method, Picture, SeamlessParams, Size, Slot, Source
@@ -232,6 +233,7 @@ VIDEO_PATCHWORK = Method(
     explanation=EXPLANATION,
     check=check,
     run=run,
+    outputs=(*FILMS, *views("cells", deep=False), *views("average", of=()), *SHOWN_CLIP),
     toroidal=lambda params: params.tileable,
     memory=memory,
 )

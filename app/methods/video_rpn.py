@@ -6,10 +6,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from app.methods.announced import FILMS, SHOWN_CLIP, views
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
 from app.methods.films import crop_film, film_memory, texture_film
 from app.methods.model import Context, Fact, Method, MovingParams, Picture, Progress, Size, Slot, Source
-from app.methods.options import SpotParams
+from app.methods.options import SpotParams, not_extended
 from app.methods.pictures import Real, encode, log_modulus
 from app.methods.references import GAUSSIAN_MIXING, IPOL_RPN, PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
 from app.synthesis.team import Team
@@ -184,5 +185,7 @@ VIDEO_RPN = Method(
     explanation=EXPLANATION,
     check=check,
     run=run,
+    outputs=(*FILMS, *views("average", of=()), *views("spectrum", "spectrum-in-time", deep=False), *SHOWN_CLIP),
+    idle=not_extended,
     memory=memory,
 )

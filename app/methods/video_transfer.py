@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from app.methods.announced import FILMS, SHOWN_CLIP, views
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
 from app.methods.films import crop_film
 from app.methods.matching import (
@@ -228,6 +229,14 @@ VIDEO_TRANSFER = Method(
     explanation=EXPLANATION,
     check=check,
     run=run,
+    outputs=(
+        *FILMS,
+        *views("cells", deep=False),
+        *views("average", of=()),
+        *views("pattern", of=("rescale",)),
+        *SHOWN_CLIP,
+        *views("crop-2", of=()),
+    ),
     size=pattern_size,
     toroidal=lambda params: False,
     memory=memory,
