@@ -9,6 +9,8 @@ from pydantic_settings import BaseSettings, SettingsConfigDict
 
 ROOT = Path(__file__).resolve().parent.parent
 MEBIBYTE = 1 << 20
+MOST = 1 << 50  # bytes, pixels or frames: beyond any machine, and far from what no float holds
+YEAR = 366 * 24 * 3600.0  # seconds
 
 
 class Settings(BaseSettings):
@@ -27,23 +29,35 @@ class Settings(BaseSettings):
     scheduler: str | None = Field(
         None, description="Address of a Dask scheduler (tcp://…); default: processes of ours."
     )
-    workers: int = Field(max(2, os.cpu_count() or 2), ge=1, description="Worker processes of the embedded engine.")
-    threads: int = Field(max(1, os.cpu_count() or 1), ge=1, description="Threads that one experiment computes with.")
-    worker_memory: int = Field(2048 * MEBIBYTE, ge=256 * MEBIBYTE, description="Bytes a worker process may use.")
-    time_limit: float = Field(300.0, gt=0, description="Seconds one experiment may run.")
-    queue_limit: int = Field(100, ge=1, description="Experiments that may wait; one more is answered 503.")
+    workers: int = Field(
+        max(2, os.cpu_count() or 2), ge=1, le=4096, description="Worker processes of the embedded engine."
+    )
+    threads: int = Field(
+        max(1, os.cpu_count() or 1), ge=1, le=4096, description="Threads that one experiment computes with."
+    )
+    worker_memory: int = Field(
+        2048 * MEBIBYTE, ge=256 * MEBIBYTE, le=MOST, description="Bytes a worker process may use."
+    )
+    time_limit: float = Field(300.0, gt=0, le=YEAR, description="Seconds one experiment may run.")
+    queue_limit: int = Field(100, ge=1, le=MOST, description="Experiments that may wait; one more is answered 503.")
 
     # Input limits
-    max_upload_bytes: int = Field(32 * MEBIBYTE, ge=1, description="Bytes of an uploaded file.")
-    max_upload_pixels: int = Field(50_000_000, ge=1, description="Pixels (width × height) of an uploaded picture.")
-    max_output_pixels: int = Field(1 << 26, ge=1, description="Pixels (width × height) of a synthesised texture.")
-    max_film_frames: int = Field(600, ge=2, description="Frames of an uploaded video.")
-    max_film_seconds: float = Field(60.0, gt=0, description="Seconds that an uploaded video plays.")
-    max_film_pixels: int = Field(
-        1 << 28, ge=1, description="Pixels (width × height × frames) of a video, uploaded or synthesised."
+    max_upload_bytes: int = Field(32 * MEBIBYTE, ge=1, le=MOST, description="Bytes of an uploaded file.")
+    max_upload_pixels: int = Field(
+        50_000_000, ge=1, le=MOST, description="Pixels (width × height) of an uploaded picture."
     )
-    decode_seconds: float = Field(20.0, gt=0, description="Seconds that decoding one upload may take.")
-    decode_memory: int = Field(2048 * MEBIBYTE, ge=64 * MEBIBYTE, description="Bytes that decoding one upload may use.")
+    max_output_pixels: int = Field(
+        1 << 26, ge=1, le=MOST, description="Pixels (width × height) of a synthesised texture."
+    )
+    max_film_frames: int = Field(600, ge=2, le=MOST, description="Frames of an uploaded video.")
+    max_film_seconds: float = Field(60.0, gt=0, le=YEAR, description="Seconds that an uploaded video plays.")
+    max_film_pixels: int = Field(
+        1 << 28, ge=1, le=MOST, description="Pixels (width × height × frames) of a video, uploaded or synthesised."
+    )
+    decode_seconds: float = Field(20.0, gt=0, le=YEAR, description="Seconds that decoding one upload may take.")
+    decode_memory: int = Field(
+        2048 * MEBIBYTE, ge=64 * MEBIBYTE, le=MOST, description="Bytes that decoding one upload may use."
+    )
 
     # Web
     base_url: str | None = Field(
@@ -51,7 +65,9 @@ class Settings(BaseSettings):
     )
     operator_token: SecretStr | None = Field(None, description="Bearer token that may delete any experiment.")
     catalogue: bool = Field(True, description="Whether the figures of the pages are made in the background.")
-    sample_keep_hours: float = Field(24.0, ge=0, description="Hours an uploaded sample without an experiment is kept.")
+    sample_keep_hours: float = Field(
+        24.0, ge=0, le=100 * YEAR / 3600, description="Hours an uploaded sample without an experiment is kept."
+    )
     log_level: Literal["debug", "info", "warning", "error"] = Field(
         "info", description="The least that is logged: debug, info, warning or error."
     )

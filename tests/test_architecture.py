@@ -17,7 +17,7 @@ SYNTHESIS = sorted(path.stem for path in (APP / "synthesis").glob("*.py") if pat
 
 # From the ground up: a module imports from its own layer and from those below it.
 LAYERS = (
-    {"app.errors", "app.settings"},
+    {"app.errors", "app.numbers", "app.settings"},
     {"app.synthesis"},
     {"app.images"},
     {"app.methods", "app.samples", "app.gallery"},

@@ -16,7 +16,7 @@ from typer.testing import CliRunner, Result
 from app.cli.commands import application
 from app.images.video.reader import read_film
 from app.methods.registry import METHODS
-from app.settings import ROOT
+from app.settings import ROOT, Settings
 from tests.methods.runs import SMALL
 
 SAND = ROOT / "samples" / "sand_desert009.png"
@@ -78,8 +78,8 @@ def test_the_same_seed_gives_the_same_bytes_and_another_seed_others(tmp_path: Pa
 
 def test_a_size_may_be_a_multiple_of_the_crop(tmp_path: Path) -> None:
     out = tmp_path / "out.png"
-    assert synthesize(CHINA, out, "--crop", "0,0,40,30", "--size", "x1.5").exit_code == 0
-    assert pixels(out).shape == (45, 60, 3)
+    assert synthesize(CHINA, out, "--crop", "0,0,43,31", "--size", "x1.5").exit_code == 0
+    assert pixels(out).shape == (47, 65, 3), "halves are rounded up, as the form does"
 
 
 @pytest.mark.parametrize(
@@ -109,9 +109,15 @@ def test_sixteen_bits_are_written_where_asked(tmp_path: Path) -> None:
         (["--size", "64x64", "--width", "64"], "either"),
         (["--seed", "-1"], "Seed"),
         (["--alpha", "0.7"], "0.5"),
-        (["--window", "square"], "'bump'"),
+        (["--window", "square"], 'one of: bump, gaussian; got "square"'),
         (["--size", "x2", "--add-smooth"], "own size"),
         (["--size", "99999x99999"], "megapixels"),
+        (["--width", "1" + "0" * 400], "Width is a whole number from 1 to 1000000"),
+        (["--seed", "9" * 5000], "Seed is a whole number from 0 to 9007199254740991"),
+        (["--alpha", "1e999"], "Transition α is a number from 0 to 0.5"),
+        (["--crop", "0,0,9," + "9" * 5000], "four whole numbers"),
+        (["--time", "0," + "9" * 5000], "two whole numbers"),
+        (["--size", "x" + "9" * 5000], "1024x1024"),
         (["--depth", "12"], "8 or 16"),
     ],
 )
@@ -202,7 +208,7 @@ def test_an_option_of_another_method_is_refused_with_words(tmp_path: Path, metho
     photos = [SAND] * len(METHODS[method].inputs)
     done = synthesize(*photos, tmp_path / "out.png", "--method", method, f"--{option}", "0.1")
     assert done.exit_code == 2
-    assert done.stderr.startswith(f"microtexture: The method {method} has no parameter '{option.replace('-', '_')}'")
+    assert done.stderr.startswith(f'microtexture: The method {method} has no parameter "{option.replace("-", "_")}"')
 
 
 def test_help_lists_options_under_the_methods_that_have_them() -> None:
@@ -286,8 +292,13 @@ def test_prune_refuses_an_age_it_cannot_read(age: str) -> None:
     assert "30d" in done.stderr
 
 
-def test_a_wrong_setting_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("MICROTEXTURE_WORKERS", "0")
+NUMERIC_SETTINGS = [name for name, field in Settings.model_fields.items() if field.annotation in (int, float)]
+
+
+@pytest.mark.parametrize("value", ["-1", "1" + "0" * 400, "inf", "nan"])
+@pytest.mark.parametrize("name", NUMERIC_SETTINGS)
+def test_a_wrong_setting_is_named(monkeypatch: pytest.MonkeyPatch, name: str, value: str) -> None:
+    monkeypatch.setenv(f"MICROTEXTURE_{name.upper()}", value)
     done = microtexture("serve")
     assert done.exit_code == 2
-    assert "MICROTEXTURE_WORKERS" in done.stderr
+    assert f"MICROTEXTURE_{name.upper()} is set wrongly" in done.stderr

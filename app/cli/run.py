@@ -23,6 +23,7 @@ from app.images.crop import Frames, Rectangle
 from app.images.decode import Decoded, Limits, decode
 from app.methods.model import Context, Film, Method, Picture, Progress, Source
 from app.methods.registry import method as method_named
+from app.numbers import said
 from app.settings import Settings
 
 FORMATS: dict[str, Format] = {
@@ -150,15 +151,15 @@ def output_size(text: str, crop: Rectangle) -> tuple[int, int]:
 
     Examples
     --------
-    >>> output_size("1024x768", Rectangle(0, 0, 5, 5)), output_size("x1.5", Rectangle(0, 0, 256, 200))
-    ((1024, 768), (384, 300))
+    >>> output_size("1024x768", Rectangle(0, 0, 5, 5)), output_size("x1.5", Rectangle(0, 0, 256, 199))
+    ((1024, 768), (384, 299))
     """
     if found := re.fullmatch(r"(\d{1,6})[x×](\d{1,6})", text, re.ASCII):
         return int(found[1]), int(found[2])
     if (found := re.fullmatch(r"[x×](\d{1,3}(?:\.\d{1,3})?)", text, re.ASCII)) and float(found[1]) > 0:
-        return max(1, round(crop.width * float(found[1]))), max(1, round(crop.height * float(found[1])))
+        return crop.scaled(float(found[1]))
     raise InvalidInputError(
-        f"--size is WIDTHxHEIGHT, for example 1024x1024, or a multiple of the crop, x2; got {text!r}."
+        f"--size is WIDTHxHEIGHT, for example 1024x1024, or a multiple of the crop, x2; got {said(text)}."
     )
 
 

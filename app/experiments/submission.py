@@ -12,8 +12,10 @@ from app.errors import InvalidInputError, TooLargeError
 from app.experiments.model import Experiment, ExperimentInput, Sample
 from app.experiments.ownership import new_identifier
 from app.images.crop import Frames, Rectangle
+from app.methods.fields import fields, reason, requirement
 from app.methods.model import Method, MovingParams, Size, Slot, StillParams
 from app.methods.registry import method as method_named
+from app.numbers import said
 from app.settings import MEBIBYTE, Settings
 
 LEAST_FRAMES = 2
@@ -217,18 +219,16 @@ def _params(method: Method, given: Mapping[str, Any]) -> StillParams:
     try:
         return method.params.model_validate(dict(given))
     except ValidationError as error:
-        raise _explained(error.errors(include_url=False)[0], method) from None
+        raise explained(error.errors(include_url=False)[0], method) from None
 
 
-def _explained(error: ErrorDetails, method: Method) -> InvalidInputError:
-    path = [str(part) for part in error["loc"]]
+def explained(fault: ErrorDetails, method: Method) -> InvalidInputError:
+    """Say what is wrong with a parameter: its name, what it takes and what came."""
+    path = [str(part) for part in fault["loc"]]
     field = ".".join(["parameters", *path])
-    if error["type"] == "extra_forbidden":
+    if fault["type"] == "extra_forbidden":
         known = ", ".join(method.params.model_fields)
-        return InvalidInputError(f"The method {method.name} has no parameter {path[-1]!r}; it has: {known}.", field)
-    declared = method.params.model_fields.get(path[0]) if path else None
-    title = (declared and declared.title) or ".".join(path) or "The parameters"
-    reason = error["msg"].removeprefix("Value error, ")
-    given = error["input"]
-    shown = f"; got {given!r}" if isinstance(given, str | int | float | bool) and len(str(given)) <= 60 else ""
-    return InvalidInputError(f"{title}: {reason[:1].lower()}{reason[1:]}{shown}.", field)
+        return InvalidInputError(f"The method {method.name} has no parameter {said(path[-1])}; it has: {known}.", field)
+    entry = next((entry for entry in fields(method.params) if entry.name in path[:1]), None)
+    words = reason(fault["msg"]) if entry is None else requirement(entry, fault["msg"])
+    return InvalidInputError(f"{words.removesuffix('.')}; got {said(fault['input'])}.", field)

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from app.errors import InvalidInputError
+from app.numbers import said, whole
 
 
 @dataclass(frozen=True)
@@ -29,10 +30,10 @@ class Rectangle:
         Rectangle(x=10, y=20, width=256, height=256)
         """
         try:
-            x, y, width, height = (int(part) for part in text.split(","))
+            x, y, width, height = (whole(part) for part in text.split(","))
         except ValueError:
             raise InvalidInputError(
-                f"A crop is four whole numbers x,y,width,height, for example 10,20,256,256; got {text!r}.", "crop"
+                f"A crop is four whole numbers x,y,width,height, for example 10,20,256,256; got {said(text)}.", "crop"
             ) from None
         return cls(x, y, width, height)
 
@@ -55,6 +56,16 @@ class Rectangle:
                 "crop",
             )
         return self
+
+    def scaled(self, factor: float) -> tuple[int, int]:
+        """Width and height of a texture ``factor`` times as large; half a pixel is rounded up.
+
+        Examples
+        --------
+        >>> Rectangle(0, 0, 103, 99).scaled(1.5)
+        (155, 149)
+        """
+        return max(1, int(self.width * factor + 0.5)), max(1, int(self.height * factor + 0.5))
 
     def __str__(self) -> str:
         return f"{self.x},{self.y},{self.width},{self.height}"
@@ -82,10 +93,10 @@ class Frames:
         Frames(first=12, count=48)
         """
         try:
-            first, count = (int(part) for part in text.split(","))
+            first, count = (whole(part) for part in text.split(","))
         except ValueError:
             raise InvalidInputError(
-                f"A time range is two whole numbers first,count, for example 0,48; got {text!r}.", "frames"
+                f"A time range is two whole numbers first,count, for example 0,48; got {said(text)}.", "frames"
             ) from None
         return cls(first, count)
 

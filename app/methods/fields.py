@@ -80,15 +80,25 @@ def fields(params: type[BaseModel]) -> tuple[FormField, ...]:
     return tuple(found)
 
 
-def requirement(entry: FormField) -> str:
-    """Say in one sentence what a field takes.
+def reason(problem: str) -> str:
+    """Word a validator's own message as the end of a sentence."""
+    words = problem.removeprefix("Value error, ").rstrip(".")
+    return f"{words[:1].lower()}{words[1:]}"
+
+
+def requirement(entry: FormField, problem: str = "") -> str:
+    """Say in one sentence what a field takes; of a text only its own validator knows, whose words are ``problem``.
 
     Examples
     --------
     >>> from app.methods.model import StillParams
     >>> requirement(fields(StillParams)[0])
-    'Width is a whole number from 1 on.'
+    'Width is a whole number from 1 to 1000000.'
     """
+    if entry.kind == "text":
+        return f"{entry.label}: {reason(problem)}."
+    if entry.kind == "switch":
+        return f"{entry.label} is true or false."
     if entry.kind == "choice":
         return f"{entry.label} is one of: {', '.join(entry.choices)}."
     noun = "a whole number" if entry.kind == "integer" else "a number"

@@ -15,6 +15,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from app.methods.announced import Announced
 from app.methods.explanation import Explanation, Reference
+from app.numbers import FAR
 
 MAX_SEED = 2**53 - 1  # the largest whole number that JSON readers in JavaScript keep exactly
 
@@ -24,8 +25,12 @@ class StillParams(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    width: int | None = Field(None, ge=1, title="Width", description="Pixels of the texture; default: as the crop.")
-    height: int | None = Field(None, ge=1, title="Height", description="Pixels of the texture; default: as the crop.")
+    width: int | None = Field(
+        None, ge=1, le=FAR, title="Width", description="Pixels of the texture; default: as the crop."
+    )
+    height: int | None = Field(
+        None, ge=1, le=FAR, title="Height", description="Pixels of the texture; default: as the crop."
+    )
     seed: int = Field(
         0,
         ge=0,
@@ -38,7 +43,9 @@ class StillParams(BaseModel):
 class MovingParams(StillParams):
     """Parameters that every method of moving textures has besides."""
 
-    frames: int | None = Field(None, ge=2, title="Frames", description="Frames of the video; default: as the clip.")
+    frames: int | None = Field(
+        None, ge=2, le=FAR, title="Frames", description="Frames of the video; default: as the clip."
+    )
 
 
 class LoopParams(MovingParams):

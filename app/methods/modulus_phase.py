@@ -13,6 +13,7 @@ from app.methods.options import WHOLE_IN_MEMORY
 from app.methods.pictures import crops, encode, log_modulus, refuse_infinite
 from app.methods.references import OPPENHEIM_LIM, RANDOM_PHASE_TEXTURES
 from app.methods.several import alike
+from app.numbers import FAR
 from app.synthesis.modulus_phase import centred_phase, power, swap
 from app.synthesis.spot import centre
 
@@ -21,10 +22,18 @@ class ModulusPhaseParams(StillParams):
     """Parameters of the swap: those that all methods have. Nothing is drawn at random."""
 
     width: int | None = Field(
-        None, ge=1, title="Width", description="Pixels of the texture; default: as the narrower crop. Both are centred."
+        None,
+        ge=1,
+        le=FAR,
+        title="Width",
+        description="Pixels of the texture; default: as the narrower crop. Both are centred.",
     )
     height: int | None = Field(
-        None, ge=1, title="Height", description="Pixels of the texture; default: as the lower crop. Both are centred."
+        None,
+        ge=1,
+        le=FAR,
+        title="Height",
+        description="Pixels of the texture; default: as the lower crop. Both are centred.",
     )
     seed: int = Field(
         0,

@@ -14,6 +14,7 @@ from app.methods.pictures import crops, encode, refuse_infinite
 from app.methods.random_phase import INPUTS
 from app.methods.references import PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
 from app.methods.references import TEXTON as TEXTON_ARTICLE
+from app.numbers import FAR
 from app.synthesis.spot import centre
 from app.synthesis.texton import extend_texton, radii, texton, texton_noise
 
@@ -30,6 +31,7 @@ class TextonParams(StillParams):
     cut: int | None = Field(
         None,
         ge=1,
+        le=FAR,
         title="Cut to K pixels",
         description="Keep only the K × K pixels around the texton's origin, and make up for the variance that is lost. "
         "A smaller K is a shorter description of the texture, and loses its long-range order; empty: nothing is cut.",

@@ -154,5 +154,4 @@ def _resize(values: dict[str, str], first: NewInput | None, errors: dict[str, st
     elif factor == "1":
         values["width"] = values["height"] = ""
     elif first and first.crop:
-        sides = (first.crop.width, first.crop.height)
-        values["width"], values["height"] = (str(int(side * float(factor) + 0.5)) for side in sides)
+        values["width"], values["height"] = map(str, first.crop.scaled(float(factor)))

@@ -75,13 +75,5 @@ def parse(method: Method, submitted: Mapping[str, str]) -> Parsed:
     except ValidationError as error:
         problems = {str(problem["loc"][0]): problem["msg"] for problem in error.errors() if problem["loc"]}
         return Parsed(
-            errors={form_name(method, e.name): _words(e, problems[e.name]) for e in declared if e.name in problems}
+            errors={form_name(method, e.name): requirement(e, problems[e.name]) for e in declared if e.name in problems}
         )
-
-
-def _words(entry: FormField, problem: str) -> str:
-    """Say what a field takes; of a text only its own validator knows."""
-    if entry.kind != "text":
-        return requirement(entry)
-    reason = problem.removeprefix("Value error, ").rstrip(".")
-    return f"{entry.label}: {reason[:1].lower()}{reason[1:]}."

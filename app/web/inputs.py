@@ -10,6 +10,7 @@ from app.experiments.submission import NewInput
 from app.images.crop import Frames, Rectangle
 from app.methods.model import Method, Slot
 from app.methods.registry import METHODS
+from app.numbers import whole
 from app.samples import BundledSample
 
 START = 512  # pixels of a side of the first crop, at most
@@ -200,7 +201,7 @@ def _chosen(
 
 def _crop(sample: Sample, numbers: list[str], field: str, errors: dict[str, str]) -> Rectangle | None:
     try:
-        return Rectangle(*(int(number) for number in numbers)).within(sample.width, sample.height)
+        return Rectangle(*map(whole, numbers)).within(sample.width, sample.height)
     except InvalidInputError as error:
         errors[field] = error.message
     except ValueError:
@@ -225,5 +226,5 @@ def _frames(
 
 def _range(sample: Sample, first: str, count: str) -> Frames:
     """Read a time range; left empty it begins with the first frame, and ends with the last."""
-    begin = int(first or 0)
-    return Frames(begin, int(count or sample.frames - begin)).within(sample.frames)
+    begin = whole(first) if first else 0
+    return Frames(begin, whole(count) if count else sample.frames - begin).within(sample.frames)

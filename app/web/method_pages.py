@@ -86,12 +86,10 @@ def _span(entry: FormField) -> str:
     Examples
     --------
     >>> [_span(entry) for entry in fields(METHODS["rpn"].params) if entry.name in ("width", "alpha", "window")]
-    ['from 1', '0 – 0.5', 'bump, gaussian']
+    ['1 – 1000000', '0 – 0.5', 'bump, gaussian']
     """
     if entry.kind == "choice":
         return ", ".join(entry.choices)
     if entry.kind == "switch":
         return "on, off"
-    if entry.minimum and entry.maximum:
-        return f"{entry.minimum} – {entry.maximum}"
-    return f"from {entry.minimum}" if entry.minimum else ""
+    return f"{entry.minimum} – {entry.maximum}" if entry.minimum else ""

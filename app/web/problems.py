@@ -12,6 +12,8 @@ from starlette.responses import JSONResponse, Response
 from starlette.routing import Match
 
 from app import errors
+from app.methods.fields import reason
+from app.numbers import said
 from app.web.security import API_PREFIX, security_headers
 
 MEDIA_TYPE = "application/problem+json"
@@ -104,11 +106,21 @@ async def _validation_error(request: Request, error: Exception) -> Response:
         return respond(request, 400, f"The body is not valid JSON: {found[0]['ctx']['error']} at character {position}.")
     if any(fault["loc"][0] == "path" for fault in found):
         return respond(request, 404, _DETAILS[404])
-    faults = [{"field": ".".join(str(part) for part in fault["loc"][1:]), "message": fault["msg"]} for fault in found]
-    first = faults[0]
-    where = f"{first['field']}: " if first["field"] else ""
+    faults = [
+        {"field": ".".join(str(part) for part in fault["loc"][1:]), "message": _message(fault)} for fault in found
+    ]
     more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
-    return respond(request, 422, f"{where}{first['message']}.{more}", faults=faults)
+    return respond(request, 422, f"{faults[0]['message']}{more}", faults=faults)
+
+
+def _place(fault: Mapping[str, Any]) -> str:
+    return ".".join(str(part) for part in fault["loc"][1:])
+
+
+def _message(fault: Mapping[str, Any]) -> str:
+    """Name the field, what is wrong with it and what came; of a missing one nothing came."""
+    came = "" if fault["type"] == "missing" else f"; got {said(fault['input'])}"
+    return f"{_place(fault) or 'The body'}: {reason(fault['msg'])}{came}."
 
 
 async def _http_error(request: Request, error: Exception) -> Response:

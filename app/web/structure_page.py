@@ -14,6 +14,7 @@ from app.experiments.service import Service
 from app.images.crop import Rectangle
 from app.methods.explanation import Formula
 from app.methods.references import RANDOM_PHASE_TEXTURES, SHARPNESS
+from app.numbers import whole
 from app.samples import bundled
 from app.settings import Settings
 from app.synthesis.structure import Structure
@@ -102,10 +103,10 @@ class Placed:
 
 def form_structure(service: Service, sample: Sample, values: Mapping[str, str]) -> Structure | None:
     """Measure the crop that a form's fields name, for pages without a script; None if it cannot be measured."""
-    with suppress(InvalidInputError):
+    with suppress(InvalidInputError, ValueError):
         crop = Rectangle.parse(",".join(values.get(name, "") for name in crop_names(1)))
-        first = values.get(time_names(1)[0], "")
-        return service.structure(sample.id, crop, frame=int(first) if first.isdecimal() and sample.moving else 0)
+        first = values.get(time_names(1)[0], "") if sample.moving else ""
+        return service.structure(sample.id, crop, frame=whole(first) if first else 0)
     return None
 
 

@@ -12,6 +12,7 @@ from PIL import Image
 from app.errors import CancelledError, InvalidInputError
 from app.experiments.submission import Allowed, NewExperiment, NewInput, prepare
 from app.images.crop import Rectangle
+from app.methods.fields import fields
 from app.methods.model import Method, Source, StillParams
 from app.methods.registry import METHODS
 from app.samples import bundled
@@ -33,6 +34,13 @@ def test_every_parameter_has_a_title_a_description_and_a_default(method: Method)
         assert declared["title"]
         assert declared["description"].endswith(".")
         assert "default" in declared
+
+
+@EVERY
+def test_every_number_has_a_least_and_a_greatest_value(method: Method) -> None:
+    """So that nothing downstream meets one that no float holds."""
+    numbers = [entry for entry in fields(method.params) if entry.kind in ("integer", "number")]
+    assert [entry.name for entry in numbers if not (entry.minimum and entry.maximum)] == []
 
 
 @EVERY

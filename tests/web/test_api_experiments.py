@@ -95,6 +95,51 @@ def test_a_fault_is_refused_with_its_field(site, change, field):
     assert response.json()["errors"][0]["message"] in response.json()["detail"]
 
 
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"parameters": {"seed": 1.5}}, "Seed is a whole number from 0 to 9007199254740991; got 1.5."),
+        ({"parameters": {"seed": "7"}}, 'Seed is a whole number from 0 to 9007199254740991; got "7".'),
+        ({"parameters": {"seed": True}}, "Seed is a whole number from 0 to 9007199254740991; got true."),
+        ({"parameters": {"seed": None}}, "Seed is a whole number from 0 to 9007199254740991; got null."),
+        ({"parameters": {"seed": -1}}, "Seed is a whole number from 0 to 9007199254740991; got -1."),
+        ({"parameters": {"alpha": [0.1]}}, "Transition α is a number from 0 to 0.5; got a list."),
+        ({"parameters": {"window": "square"}}, 'Window is one of: bump, gaussian; got "square".'),
+        ({"parameters": {"add_smooth": 1}}, "Add the smooth component is true or false; got 1."),
+        ({"parameters": 7}, "parameters: input should be a valid dictionary; got 7."),
+        ({"listed": "yes"}, 'listed: input should be a valid boolean; got "yes".'),
+        (
+            {"inputs": [{"sample": "gravel_gray", "crop": {"x": 0.5, "y": 0, "width": 9, "height": 9}}]},
+            "inputs.0.crop.x: input should be a valid integer; got 0.5.",
+        ),
+        (
+            {"inputs": [{"sample": "gravel_gray", "crop": {"x": 0, "y": 0, "width": 9}}]},
+            "inputs.0.crop.height: field required.",
+        ),
+    ],
+)
+def test_a_fault_is_told_with_its_name_and_the_value_that_came(site, change, message):
+    assert site.run(wait=False, **change).json()["detail"] == message
+
+
+def test_a_fault_of_a_query_is_told_in_the_same_way(site):
+    detail = site.client.get("/api/v1/experiments?limit=many").json()["detail"]
+    assert detail.startswith("limit: input should be a valid integer")
+    assert detail.endswith('; got "many".')
+
+
+def test_a_number_without_a_fraction_is_an_integer_as_json_schema_has_it(site):
+    """Some writers of JSON put ``.0`` behind every number."""
+    crop = {"x": 2.0, "y": 3.0, "width": 20.0, "height": 10.0}
+    record = site.finished(
+        inputs=[{"sample": "gravel_gray", "crop": crop, "frames": {"first": 0.0, "count": 1.0}}],
+        parameters={"width": 24.0, "height": 1.2e1, "seed": 7.0, "alpha": 0},
+    )
+    assert record["inputs"][0]["crop"] == crop
+    assert [record["parameters"][name] for name in ("width", "height", "seed", "alpha")] == [24, 12, 7, 0]
+    assert [type(record["parameters"][name]) for name in ("width", "seed")] == [int, int]
+
+
 def test_a_texture_beyond_the_limit_is_too_large(site):
     assert site.run(parameters={"width": 10_000, "height": 10_000}).status_code == 413
 

@@ -206,7 +206,7 @@ def test_a_clip_comes_back_as_the_video_that_an_experiment_makes(site, clip, acc
         ({"time": "5,6"}, "time", "reaches outside"),
         ({"format": "png"}, "format", "webm or mp4"),
         ({"method": "rpn"}, "time", "1 frame"),
-        ({"frames": "1"}, "frames", "greater than or equal to 2"),
+        ({"frames": "1"}, "frames", "whole number from 2"),
     ],
 )
 def test_what_is_wrong_with_a_moving_run_is_said_at_its_field(site, clip, fields, field, words):

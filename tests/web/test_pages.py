@@ -9,6 +9,9 @@ from typing import Any
 import httpx
 import pytest
 
+from app.cli.run import output_size
+from app.images.crop import Rectangle
+
 CROP = {"crop.x": "4", "crop.y": "6", "crop.width": "20", "crop.height": "16"}
 FORM = {"sample": "gravel_gray", **CROP, "method": "rpn", "size": "1", "seed": "3", "rpn.alpha": "0.1"}
 
@@ -152,6 +155,14 @@ def test_a_submitted_form_becomes_an_experiment(site: Any) -> None:
     assert record["inputs"][0]["crop"] == {"x": 4, "y": 6, "width": 20, "height": 16}
     assert (record["parameters"]["width"], record["parameters"]["height"], record["parameters"]["seed"]) == (30, 24, 3)
     assert record["listed"] is False
+
+
+def test_half_a_pixel_is_rounded_up_as_on_the_command_line(site: Any) -> None:
+    odd = {**FORM, "crop.width": "31", "crop.height": "23", "size": "1.5"}
+    answer = site.client.post("/experiments", data=odd)
+    record = site.client.get("/api/v1" + answer.headers["location"]).json()
+    size = (record["parameters"]["width"], record["parameters"]["height"])
+    assert size == output_size("x1.5", Rectangle(0, 0, 31, 23)) == (47, 35)
 
 
 @pytest.mark.parametrize(

@@ -2,14 +2,22 @@
 
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StringConstraints
 
 from app.experiments.submission import NewInput
 from app.images.crop import Frames, Rectangle
+from app.numbers import FAR
 
 IDENTIFIER = r"^[A-Za-z0-9_-]{1,64}$"
 Identifier = Annotated[str, StringConstraints(pattern=IDENTIFIER)]
-_FAR = 1_000_000  # pixels or frames; beyond any sample, and small enough for every database
+
+
+def without_fraction(value: object) -> object:
+    """Take ``7.0`` for 7, as JSON Schema does: what has no fraction is an integer."""
+    return int(value) if isinstance(value, float) and value.is_integer() else value
+
+
+Whole = Annotated[int, BeforeValidator(without_fraction)]
 
 
 class Body(BaseModel):
@@ -21,10 +29,10 @@ class Body(BaseModel):
 class Crop(Body):
     """A rectangle in pixels of the upright sample."""
 
-    x: int = Field(ge=0, le=_FAR, description="From the left edge.")
-    y: int = Field(ge=0, le=_FAR, description="From the top edge.")
-    width: int = Field(ge=1, le=_FAR)
-    height: int = Field(ge=1, le=_FAR)
+    x: Whole = Field(ge=0, le=FAR, description="From the left edge.")
+    y: Whole = Field(ge=0, le=FAR, description="From the top edge.")
+    width: Whole = Field(ge=1, le=FAR)
+    height: Whole = Field(ge=1, le=FAR)
 
     def rectangle(self) -> Rectangle:
         return Rectangle(self.x, self.y, self.width, self.height)
@@ -33,8 +41,8 @@ class Crop(Body):
 class TimeRange(Body):
     """A range of a video's frames."""
 
-    first: int = Field(0, ge=0, le=_FAR, description="Number of the first frame, from 0.")
-    count: int = Field(ge=1, le=_FAR, description="How many frames.")
+    first: Whole = Field(0, ge=0, le=FAR, description="Number of the first frame, from 0.")
+    count: Whole = Field(ge=1, le=FAR, description="How many frames.")
 
     def frames(self) -> Frames:
         return Frames(self.first, self.count)

@@ -12,9 +12,9 @@ from app.errors import DeletedError, InvalidInputError, NotFoundError
 from app.experiments.model import Experiment
 from app.experiments.ownership import new_token
 from app.experiments.service import Service
-from app.experiments.submission import NewExperiment
+from app.experiments.submission import NewExperiment, explained
 from app.methods.registry import METHODS
-from app.web.api.bodies import IDENTIFIER, Body, InputBody, ListedBody
+from app.web.api.bodies import IDENTIFIER, Body, InputBody, ListedBody, without_fraction
 from app.web.api.prefer import LONGEST, wait_seconds
 from app.web.api.records import API, ExperimentList, ExperimentRecord
 from app.web.deps import ServiceDep, TokenDep, base_url, remember_owner
@@ -78,13 +78,14 @@ class ExperimentBody(Body):
 
     def _check_types(self) -> None:
         """Refuse ``"7"`` for 7: the service takes it, for forms and command lines have only text; JSON has numbers."""
+        method = METHODS[self.method]
+        given = {name: without_fraction(value) for name, value in self.parameters.items()}
         try:
-            METHODS[self.method].params.model_validate(self.parameters, strict=True)
+            method.params.model_validate(given, strict=True)
         except ValidationError as error:
             for fault in error.errors():
                 if fault["type"].endswith("_type"):
-                    field = ".".join(["parameters", *(str(part) for part in fault["loc"])])
-                    raise InvalidInputError(f"{fault['msg']}.", field) from None
+                    raise explained(fault, method) from None
 
 
 def require_json(request: Request) -> None:

@@ -8,6 +8,7 @@ from starlette.responses import FileResponse, Response
 
 from app.errors import InvalidInputError
 from app.experiments.pictures import FilmFormat
+from app.numbers import FAR
 from app.web.api.bodies import IDENTIFIER
 from app.web.api.records import API, SampleList, SampleRecord
 from app.web.deps import ServiceDep, TokenDep, base_url, in_upload_thread
@@ -107,11 +108,9 @@ async def sample_image(
     service: ServiceDep,
     size: Annotated[
         int | None,
-        Query(
-            ge=1, le=1_000_000, description="Bounds its longer side in pixels, rounded up to 256, 512, 1024 or 2048."
-        ),
+        Query(ge=1, le=FAR, description="Bounds its longer side in pixels, rounded up to 256, 512, 1024 or 2048."),
     ] = None,
-    frame: Annotated[int, Query(ge=0, le=1_000_000, description="Of a video: which frame, from 0.")] = 0,
+    frame: Annotated[int, Query(ge=0, le=FAR, description="Of a video: which frame, from 0.")] = 0,
 ) -> Response:
     """Upright and in sRGB; at its own size if none is asked for. Of a video it is one frame."""
     sample = await run_in_threadpool(service.sample, sample_id)

@@ -8,6 +8,7 @@ from starlette.concurrency import run_in_threadpool
 
 from app.experiments.meter import Verdict, reading
 from app.images.crop import Rectangle
+from app.numbers import FAR
 from app.synthesis.structure import SIGMA
 from app.web.api.bodies import Crop
 from app.web.api.records import API
@@ -53,7 +54,7 @@ async def read_structure(
     sigma: Annotated[
         float, Query(ge=0, le=LARGEST_SIGMA, description="Scale in pixels, for δ and z. The verdict is meant for 2.")
     ] = SIGMA,
-    frame: Annotated[int, Query(ge=0, le=1_000_000, description="Of a video: which frame, from 0.")] = 0,
+    frame: Annotated[int, Query(ge=0, le=FAR, description="Of a video: which frame, from 0.")] = 0,
 ) -> StructureIndex:
     """Measure a crop, within a tenth of a second for 512 × 512 pixels: random phase models reproduce micro-textures."""
     sample = await run_in_threadpool(service.sample, sample_id)
