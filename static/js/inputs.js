@@ -1,5 +1,6 @@
 // The inputs of a sample's page: editors of each one's crop and time range, and for further ones what is chosen or uploaded.
 
+import { ask } from "./answers.js";
 import { Crop } from "./crop.js";
 import { TimeRange } from "./time_range.js";
 
@@ -22,6 +23,7 @@ class Further {
     this.time = new TimeRange(root);
     this.select = root.querySelector("select");
     this.status = root.querySelector(".sending");
+    this.status.tabIndex = -1;
     this.shown = this.select.value;
     root.querySelector("[name=show]").remove();
     this.offerThumbnails();
@@ -108,19 +110,24 @@ class Further {
     input.value = "";
     button.disabled = true;
     count(1);
-    this.status.textContent = "Sending …";
+    this.tell("Sending …");
     try {
-      const answer = await fetch("/api/v1/samples", { method: "POST", body });
-      const record = await answer.json();
-      if (!answer.ok) throw new Error(record.detail);
-      this.offer(record);
-      this.status.textContent = "";
-    } catch (error) {
-      const lost = error instanceof TypeError; // fetch says so of a connection that broke
-      this.status.textContent = lost ? "The connection broke: look whether you are online, and try again." : error.message;
+      this.offer(await ask("/api/v1/samples", { method: "POST", body }));
+      this.tell("");
+    } catch (refusal) {
+      this.tell(refusal.message, true);
     }
     button.disabled = false;
     count(-1);
+  }
+
+  /** Say how the upload goes; who waits for it is led to a refusal, who has gone on to other things is not. */
+  tell(text, refused = false) {
+    this.status.textContent = text;
+    this.status.classList.toggle("error", refused);
+    this.status.classList.toggle("hint", !refused);
+    const { activeElement } = document;
+    if (refused && (activeElement === document.body || this.root.contains(activeElement))) this.status.focus();
   }
 
   offer({ id, width, height, frames, rate }) {

@@ -1,7 +1,12 @@
 // The structure meter beside a crop. It follows the crop while that is dragged: one question at a time, the next one about
-// the newest crop. Its sentence is announced, its number is not, so that dragging does not chatter.
+// the newest crop. Its sentence is announced, its number is not, so that dragging does not chatter. What could not be asked is
+// not known: no verdict stands beside a crop that it is not about.
+
+import { ask } from "./answers.js";
 
 const SIDES = ["x", "y", "width", "height"];
+const PATIENCE = 20_000; // milliseconds for one answer
+const [SOON, LATE] = [2_000, 60_000]; // milliseconds until a question that failed is asked again: from, doubling, up to
 
 class Meter {
   constructor(root) {
@@ -11,39 +16,75 @@ class Meter {
     this.frame = around.querySelector("[name$='time.first']");
     this.select = around.querySelector("select[name$=sample]");
     this.bar = root.querySelector(".meter-bar");
+    this.sentence = root.querySelector(".structure-words");
     this.asked = "";
     // What is not known yet has its room already, so that nothing moves under the pointer when it comes.
     root.classList.toggle("unknown", root.hidden);
     root.hidden = false;
     this.asking = false;
-    for (const change of ["crop", "change"]) root.closest("form").addEventListener(change, () => this.follow().catch(reportError));
-    this.follow().catch(reportError);
+    this.pause = SOON;
+    this.timer = 0;
+    const follow = () => {
+      this.follow().catch(reportError);
+    };
+    for (const change of ["crop", "change"]) root.closest("form").addEventListener(change, follow);
+    window.addEventListener("online", follow);
+    follow();
   }
 
-  /** What to ask; nothing while the input is not on the screen. */
+  /** Whether the input is on the screen and has a sample. */
+  get shown() {
+    return this.root.parentElement.checkVisibility() && Boolean(this.sample);
+  }
+
+  get sample() {
+    return this.select ? this.select.value : this.root.dataset.sample;
+  }
+
+  /** What to ask; nothing where there is no crop to ask about. */
   address() {
-    if (!this.root.parentElement.checkVisibility()) return "";
-    const sample = this.select ? this.select.value : this.root.dataset.sample;
     const crop = this.fields.map((field) => field.value);
-    if (!sample || !crop.every((value) => /^\d+$/.test(value))) return "";
+    if (!this.shown || !crop.every((value) => /^\d+$/.test(value))) return "";
     const frame = this.frame.closest(".time").hidden || !/^\d+$/.test(this.frame.value) ? "" : `&frame=${this.frame.value}`;
-    return `/api/v1/samples/${encodeURIComponent(sample)}/structure?crop=${crop.join(",")}${frame}`;
+    return `/api/v1/samples/${encodeURIComponent(this.sample)}/structure?crop=${crop.join(",")}${frame}`;
   }
 
   async follow() {
     if (this.asking) return;
+    clearTimeout(this.timer);
     this.asking = true;
-    for (let address = this.address(); address && address !== this.asked; address = this.address()) {
-      this.asked = address;
-      try {
-        const answer = await fetch(address);
-        if (answer.ok) this.show(await answer.json());
-        else this.root.classList.add("unknown"); // such as a crop that holds transparent pixels: the form says so when it is sent
-      } catch {
-        break; // offline: the next move of the crop asks again
+    try {
+      for (let address = this.address(); address !== this.asked; address = this.address()) {
+        this.asked = address;
+        if (address) this.show(await ask(address, { patience: PATIENCE }));
+        else if (this.shown) this.forget(""); // a crop that is being typed
       }
+      this.pause = SOON;
+    } catch (refusal) {
+      this.forget(refusal.message);
+      if (!refusal.final) this.again();
+      else if (this.address() !== this.asked) this.again(0); // refused was a crop that has moved on meanwhile
+    } finally {
+      this.asking = false;
     }
-    this.asking = false;
+  }
+
+  /** Ask the same once more, later or with the next change. */
+  again(pause = this.pause) {
+    this.asked = "";
+    this.timer = setTimeout(() => this.follow().catch(reportError), pause);
+    if (pause) this.pause = Math.min(2 * pause, LATE);
+  }
+
+  /** Say nothing of this crop, but why: such as one that holds transparent pixels, or a connection that broke. */
+  forget(reason) {
+    this.root.classList.add("unknown");
+    delete this.root.dataset.verdict;
+    this.tell(reason);
+  }
+
+  tell(words) {
+    if (this.sentence.textContent !== words) this.sentence.textContent = words;
   }
 
   show({ delta, verdict, words }) {
@@ -53,8 +94,7 @@ class Meter {
     this.root.querySelector(".meter-number").textContent = shown.toFixed(2);
     this.root.dataset.verdict = verdict;
     this.root.classList.remove("unknown");
-    const sentence = this.root.querySelector(".structure-words");
-    if (sentence.textContent !== words) sentence.textContent = words;
+    this.tell(words);
   }
 }
 

@@ -1,5 +1,7 @@
 // Home: a photograph or a clip can also be dropped anywhere on the page or pasted, and is sent as soon as it is chosen.
 
+import { read } from "./answers.js";
+
 const form = document.querySelector("#upload");
 const input = form.querySelector("#file");
 const message = form.querySelector("#upload-error");
@@ -22,11 +24,12 @@ function fail(text) {
   message.focus();
 }
 
-function detailOf(request) {
+/** Go on to the page of what was taken, or say why it was not; an XMLHttpRequest that broke has the status 0. */
+function finish({ target }) {
   try {
-    return JSON.parse(request.responseText).detail;
-  } catch {
-    return `The service answered ${request.status}: try again.`;
+    location.assign(`/samples/${read(target.status, target.responseText).id}`);
+  } catch (refusal) {
+    fail(refusal.message);
   }
 }
 
@@ -50,11 +53,7 @@ function send(file) {
     bar.removeAttribute("value");
     barText.textContent = "Reading the file …";
   });
-  request.addEventListener("load", ({ target }) => {
-    if (target.status === 201) location.assign(`/samples/${JSON.parse(target.responseText).id}`);
-    else fail(detailOf(target));
-  });
-  request.addEventListener("error", () => fail("The connection broke: look whether you are online, and try again."));
+  for (const end of ["load", "error", "abort"]) request.addEventListener(end, finish);
   request.open("POST", form.dataset.api);
   const body = new FormData();
   body.append("file", file, file.name || "upload");
