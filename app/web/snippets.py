@@ -2,7 +2,6 @@
 
 import json
 import shlex
-from textwrap import fill
 from typing import Any
 
 from app.experiments.model import Experiment
@@ -10,7 +9,8 @@ from app.images.crop import Frames
 from app.methods.registry import METHODS
 
 WIDTH = 76  # characters of a line
-JOINED = "\N{NO-BREAK SPACE}"  # where no line is broken
+SHORT = 60  # characters of a Python value that stays on its line, behind its name
+INDENT = 4 * " "
 
 
 def snippets(experiment: Experiment, base_url: str) -> tuple[tuple[str, str], ...]:
@@ -69,6 +69,12 @@ def _form(value: Any) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
+def _field(name: str, value: str) -> str:
+    """One field for curl, which reads more than a text into a ``;``, unless told not to."""
+    option = "--form-string" if ";" in value else "-F"
+    return f"{option} {shlex.quote(f'{name}={value}')}"
+
+
 def _curl(experiment: Experiment, base_url: str, files: dict[str, str]) -> str:
     entries: dict[str, Any] = {"method": experiment.method}
     method = METHODS[experiment.method]
@@ -78,7 +84,7 @@ def _curl(experiment: Experiment, base_url: str, files: dict[str, str]) -> str:
         if method.slot(index).moving:
             entries[f"time{suffix}"] = source.frames
     entries |= _said(dict(experiment.parameters))
-    words = [f"-F {shlex.quote(f'{name}={_form(value)}')}" for name, value in entries.items()]
+    words = [_field(name, _form(value)) for name, value in entries.items()]
     address = shlex.quote(f"{base_url}/api/v1/synthesize")
     return _wrapped([f"curl -fsS -o {_texture(experiment)}", address, *words])
 
@@ -115,26 +121,18 @@ def _wrapped(words: list[str]) -> str:
 
 def _python(experiment: Experiment, base_url: str) -> str:
     moving = METHODS[experiment.method].moving
-    sources = ""
+    inputs: list[dict[str, Any]] = []
     for source in experiment.inputs:
-        said = {"sample": source.sample, "crop": vars(source.crop)}
+        inputs.append({"sample": source.sample, "crop": vars(source.crop)})
         if moving or source.frames.first:
-            said["frames"] = vars(source.frames)
-        lines = ",\n         ".join(f"{_literal(name)}: {_literal(value)}" for name, value in said.items())
-        sources += f"        {{{lines}}},\n"
-    together = f'"parameters": {_literal(_said(dict(experiment.parameters)))}'.replace(": ", f":{JOINED}")
-    parameters = fill(together, WIDTH, initial_indent=" " * 4, subsequent_indent=" " * 8).replace(JOINED, " ")
+            inputs[-1]["frames"] = vars(source.frames)
+    parameters = _said(dict(experiment.parameters))
+    request = {"method": experiment.method, "inputs": inputs, "parameters": parameters, "listed": False}
     return f"""import time
 
 import httpx
 
-request = {{
-    "method": {_literal(experiment.method)},
-    "inputs": [
-{sources}    ],
-{parameters},
-    "listed": False,
-}}
+request = {_literal(request)}
 with httpx.Client(base_url={_literal(base_url)}, timeout=60) as service:
     answer = service.post(
         "/api/v1/experiments", json=request, headers={{"Prefer": "wait=30"}}
@@ -150,8 +148,18 @@ with open({_literal(_texture(experiment))}, "wb") as file:
 """
 
 
-def _literal(value: Any) -> str:
-    """Write a value as Python with double quotes."""
+def _literal(value: Any, indent: str = "") -> str:
+    """Write a value as Python with double quotes: on one line where it fits, else an entry a line."""
     if isinstance(value, dict):
-        return "{" + ", ".join(f"{_literal(key)}: {_literal(entry)}" for key, entry in value.items()) + "}"
-    return json.dumps(value) if isinstance(value, str) else repr(value)
+        entries = [f"{_literal(key)}: {_literal(entry, indent + INDENT)}" for key, entry in value.items()]
+        brackets = "{}"
+    elif isinstance(value, list):
+        entries = [_literal(entry, indent + INDENT) for entry in value]
+        brackets = "[]"
+    else:
+        return json.dumps(value) if isinstance(value, str) else repr(value)
+    line = ", ".join(entries).join(brackets)
+    if "\n" not in line and len(indent) + len(line) < SHORT:
+        return line
+    lines = "".join(f"{indent}{INDENT}{entry},\n" for entry in entries)
+    return f"{brackets[0]}\n{lines}{indent}{brackets[1]}"

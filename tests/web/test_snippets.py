@@ -1,0 +1,137 @@
+"""The snippets of every method say what the experiment is, in three languages, and run."""
+
+import ast
+import os
+import shlex
+import subprocess
+import sys
+from collections.abc import Iterator
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+from app.cli.commands import application
+from app.experiments.model import Experiment, ExperimentInput
+from app.images.crop import Frames, Rectangle
+from app.methods.fields import FormField, fields
+from app.methods.model import Method
+from app.methods.registry import METHODS
+from app.web.snippets import snippets
+
+BASE = "https://texture.example.org"
+EVERY = pytest.mark.parametrize("method", METHODS.values(), ids=METHODS)
+# Every length that a text may have, so that wherever a line is broken, some text lies across the break.
+WEIGHTS = [", ".join(["0.25"] * count) for count in range(1, 17)] + ["0,5; 0,5", "1e-3,1" + " " * 80 + ",1"]
+
+
+def others(field: FormField) -> list[Any]:
+    """Values of a parameter beside its default."""
+    match field.kind:
+        case "switch":
+            return [field.default != "on"]
+        case "choice":
+            return [choice for choice in field.choices if choice != field.default]
+        case "integer":
+            return [int(field.minimum), int(field.maximum)]
+        case "number":
+            return [float(field.minimum), float(field.maximum) / 3, float(field.maximum)]
+    return [""]
+
+
+def experiments(method: Method) -> Iterator[Experiment]:
+    """One with each value of each parameter, one with all of them at once, and those with texts of any length."""
+    usual = {**method.params().model_dump(mode="json"), "width": 640, "height": 48}
+    usual |= {"frames": 60} if method.moving else {}
+    changes = [{field.name: value} for field in fields(method.params) for value in others(field)]
+    changes.append({field.name: others(field)[-1] for field in fields(method.params)})
+    changes += [{"weights": weights} for weights in WEIGHTS if "weights" in usual]
+    crops = [Rectangle(10 * number, 0, 512, 384) for number in range(len(method.inputs) + method.more)]
+    for place, change in enumerate(changes):
+        count = len(method.inputs) + (method.more if place % 2 else 0)
+        slots = [method.slot(index) for index in range(count)]
+        inputs = tuple(
+            ExperimentInput(f"sample-{index % 2}", crop, Frames(3, 48) if slot.moving else Frames(index % 2, 1))
+            for index, (crop, slot) in enumerate(zip(crops, slots, strict=False))
+        )
+        yield Experiment("id", method.name, inputs, {**usual, **change}, True, "", datetime.now(UTC))
+
+
+def texts(experiment: Experiment, base: str = BASE) -> dict[str, str]:
+    return dict(snippets(experiment, base))
+
+
+@EVERY
+def test_the_python_snippet_is_python_and_asks_for_the_experiment(method: Method) -> None:
+    for experiment in experiments(method):
+        tree = ast.parse(texts(experiment)["Python"])
+        request = next(node for node in tree.body if isinstance(node, ast.Assign))
+        asked = ast.literal_eval(request.value)
+        assert asked["method"] == method.name
+        given = {name: value for name, value in experiment.parameters.items() if value is not None}
+        assert asked["parameters"] == given
+        for said, source in zip(asked["inputs"], experiment.inputs, strict=True):
+            assert said["sample"] == source.sample
+            assert Rectangle(**said["crop"]) == source.crop
+            assert Frames(**said.get("frames", {})) == source.frames
+
+
+@EVERY
+def test_the_curl_snippet_sends_every_parameter(method: Method) -> None:
+    for experiment in experiments(method):
+        *_, line = texts(experiment)["curl"].replace("\\\n", "").strip().split("\n")
+        words = shlex.split(line)
+        sent = dict(
+            words[place + 1].split("=", 1) for place, word in enumerate(words) if word in ("-F", "--form-string")
+        )
+        for name, value in experiment.parameters.items():
+            if value is not None:
+                assert sent[name] == (str(value).lower() if isinstance(value, bool) else str(value))
+        crops = [sent[name] for name in sent if name.startswith("crop")]
+        assert crops == [str(source.crop) for source in experiment.inputs]
+
+
+@EVERY
+def test_the_command_line_takes_the_options_of_its_snippet(method: Method) -> None:
+    """What it then says is missing are the files."""
+    for experiment in experiments(method):
+        *_, line = texts(experiment)["Command line"].replace("\\\n", "").strip().split("\n")
+        program, *words = shlex.split(line)
+        assert program == "microtexture"
+        done = CliRunner().invoke(application(with_method_options=True), words)
+        assert (done.exit_code, done.stderr) == (2, f"microtexture: There is no file {words[1]}.\n")
+
+
+@pytest.mark.parametrize(
+    ("method", "samples", "parameters"),
+    [
+        ("mix", ["gravel_gray"] * 3, {"weights": "0.25, 0.5 ,0.25", "strip": 0, "width": 40}),
+        ("video-rpn", ["clip"], {"frames": 7, "width": 50}),
+    ],
+)
+@pytest.mark.parametrize("language", ["curl", "Command line", "Python"])
+def test_a_snippet_runs_as_it_stands_and_gives_the_texture_of_the_page(
+    site: Any, clip: str, tmp_path: Path, language: str, method: str, samples: list[str], parameters: dict[str, Any]
+) -> None:
+    inputs = [
+        {"sample": clip if name == "clip" else name, "crop": {"x": place, "y": 2, "width": 30, "height": 24}}
+        for place, name in enumerate(samples)
+    ]
+    record = site.finished(method=method, inputs=inputs, parameters=parameters)
+    text = texts(site.service.get(record["id"]), site.url)[language]
+    command = [sys.executable, "-c", text] if language == "Python" else ["bash", "-euc", text]
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    done = subprocess.run(
+        command,
+        cwd=tmp_path,
+        env={**os.environ, "PATH": path},
+        check=False,
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
+    assert done.returncode == 0, done.stderr
+    (made,) = tmp_path.glob("texture.*")
+    assert made.read_bytes() == site.client.get(f"{record['url']}/outputs/texture").content
