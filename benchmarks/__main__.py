@@ -1,6 +1,6 @@
 """Everything that is measured: ``make bench``."""
 
-from benchmarks import kernel, laboratory, patchwork, service
+from benchmarks import kernel, laboratory, patchwork, service, worker
 
 if __name__ == "__main__":
     kernel.main()
@@ -8,5 +8,7 @@ if __name__ == "__main__":
     laboratory.main()
     print()
     patchwork.main()
+    print()
+    worker.main()
     print()
     service.main()

@@ -9,6 +9,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -66,11 +67,13 @@ def line(name: str, value: float, unit: str, aim: float | None = None, *, least:
 
 def overhead(service: Served, photo: Path, threads: int) -> None:
     """One experiment at a time: what is not the kernel, and where it goes."""
-    totals, kernels, directs, stages = [], [], [], list[dict[str, float]]()
+    totals, faults, kernels, directs, stages = [], [], [], [], list[dict[str, float]]()
     for seed in range(SINGLE_RUNS):
+        before = _page_faults(service)
         start = time.perf_counter()
         record = service.finish(body(seed))
         totals.append(time.perf_counter() - start)
+        faults.append(_page_faults(service) - before)
         stages.append(record["timings"])
         kernels.append(seconds(lambda seed=seed: kernel(photo, seed, threads)))  # type: ignore[misc]
         directs.append(seconds(lambda seed=seed: directly(photo, seed, threads)))  # type: ignore[misc]
@@ -78,6 +81,7 @@ def overhead(service: Served, photo: Path, threads: int) -> None:
     line("one experiment of 512², request to finished record", total, "ms")
     line("  its kernel, called directly: the texture as PNG", texture, "ms")
     line("  minus the kernel", total - texture, "ms", 80)
+    line("  its page faults, in the workers", statistics.median(faults), "", 1000)
     line("  of which the steps and spectra", work - texture, "ms", note="the same calls made directly")
     computed = 1e3 * statistics.median(sum(each.values()) for each in stages)
     line("  of which web, database, engine, files", total - work, "ms", note=f"{computed:.0f} ms pass in the worker")
@@ -123,10 +127,11 @@ def pages(service: Served) -> None:
 
 
 def memory(service: Served) -> None:
-    """How much more the worker process takes at the peak of a run of 4096² than before it."""
+    """What idle processes take, and how much more the worker does at the peak of a run of 4096² than before it."""
     for seed in range(8):
         service.finish(body(50 + seed))  # every worker has loaded what it loads once
     family = [service.process, *service.process.children(recursive=True)]
+    line("idle service after runs of 512², its share of memory", sum(map(_share, family)) / MEGABYTE, "MB")
     idle = {}
     for process in family:
         Path(f"/proc/{process.pid}/clear_refs").write_text("5", encoding="ascii")  # resets the peak
@@ -138,6 +143,25 @@ def memory(service: Served) -> None:
     hungriest = max(above, key=lambda process: above[process])
     note = f"the worker's idle {idle[hungriest.pid] / MEGABYTE:.0f} MB; {took:.1f} s"
     line("peak memory of 512² → 4096² RGB above idle", above[hungriest] / MEGABYTE, "MB", 300, note=note)
+    line("idle service after it, its share of memory", sum(map(_share, family)) / MEGABYTE, "MB")
+
+
+def _page_faults(service: Served) -> int:
+    """Pages that the system had to put in place, without a disk, for the processes below the service's own."""
+    total = 0
+    for process in service.process.children(recursive=True):
+        with suppress(FileNotFoundError):  # it has ended meanwhile
+            after_name = Path(f"/proc/{process.pid}/stat").read_text(encoding="ascii").rpartition(")")[2]
+            total += int(after_name.split()[7])
+    return total
+
+
+def _share(process: psutil.Process) -> int:
+    """Bytes that a process holds, pages shared with others divided by their number (PSS); 0 once it has ended."""
+    try:
+        return int(process.memory_full_info().pss)
+    except psutil.NoSuchProcess:
+        return 0
 
 
 def _peak(process: psutil.Process) -> int:

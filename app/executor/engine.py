@@ -14,6 +14,7 @@ from distributed.core import Status
 from distributed.utils import get_mp_context
 
 from app.executor import tasks
+from app.executor.memory import MALLOC
 from app.experiments.ports import Run
 from app.settings import Settings
 
@@ -27,6 +28,10 @@ LOOPBACK = "127.0.0.1"
 EMBEDDED = {
     "distributed.scheduler.allowed-failures": 0,  # a killed task comes back to us, who know where nothing else runs
     "distributed.scheduler.work-stealing": False,  # a worker is never given a second task
+    "distributed.nanny.pre-spawn-environ": {  # for Dask's own dict, which it replaces
+        **MALLOC,
+        **dict.fromkeys(("MKL_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"), 1),
+    },
     "distributed.worker.multiprocessing-method": "forkserver",
     "distributed.worker.profile.enabled": False,
     "distributed.scheduler.http.routes": [],

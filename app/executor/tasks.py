@@ -8,6 +8,7 @@ from typing import Any
 from distributed import get_worker
 
 from app.errors import AppError, CancelledError, TimeLimitError
+from app.executor.memory import give_back
 from app.executor.words import BROKEN, out_of_time
 from app.experiments.ports import Run
 from app.settings import Settings
@@ -33,6 +34,7 @@ def work(run: Run, settings: Settings, job: str, topic: str) -> None:
         report.send(failure=BROKEN)
     finally:
         _cancelled.discard(job)
+        give_back()
 
 
 def stop(job: str) -> None:

@@ -4,12 +4,16 @@ A job's name is ``behaviour!directory``: what it shall do, and where it leaves m
 """
 
 import os
+import resource
 import signal
 import time
 from pathlib import Path
 
+import numpy as np
+
 from app.errors import InvalidInputError
-from app.methods.model import Progress
+from app.methods.model import Context, Progress, Source
+from app.methods.registry import method
 from app.settings import Settings
 
 PATIENCE = 60.0
@@ -79,4 +83,23 @@ def greedy(directory: Path, name: str, progress: Progress) -> None:
         time.sleep(0.01)
 
 
-BEHAVIOURS = {function.__name__: function for function in (quick, polite, stubborn, refused, broken, killed, greedy)}
+def textured(directory: Path, name: str, progress: Progress) -> None:
+    """Make every picture of an RPN of 512², and write down the pages that were brought into memory for it."""
+    crop = np.random.default_rng(3).integers(0, 256, (512, 512, 3)).astype(np.float32)
+    rpn = method("rpn")
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+    for _ in rpn.run([Source(crop, 255)], rpn.params(seed=1), Context(8, 2, progress)):
+        pass
+    (directory / f"{name}.faults").write_text(str(resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before))
+
+
+def large(directory: Path, name: str, progress: Progress) -> None:
+    """Fill 400 MB in blocks of 4 MB, and let go of them."""
+    blocks = [np.ones(1 << 22, np.uint8) for _ in range(100)]
+    progress("holding them", len(blocks) / 100)
+
+
+BEHAVIOURS = {
+    function.__name__: function
+    for function in (quick, polite, stubborn, refused, broken, killed, greedy, textured, large)
+}
