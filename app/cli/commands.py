@@ -68,25 +68,37 @@ def serve(
 
 
 def methods(
+    name: Annotated[
+        str | None,
+        typer.Argument(help="Tell of this one what it can give, and under which parameters.", metavar="METHOD"),
+    ] = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="The whole declaration, as GET /api/v1/methods gives it.")
     ] = False,
 ) -> None:
-    """List the methods."""
+    """List the methods, or the parameters and outputs of one."""
     from app.methods.registry import METHODS
+    from app.methods.registry import method as method_named
 
+    with plain_errors():
+        chosen = list(METHODS.values()) if name is None else [method_named(name)]
     if as_json:
         from app.web.api.records import MethodList, MethodRecord
 
-        document = MethodList(methods=[MethodRecord.of(method) for method in METHODS.values()])
+        document = MethodList(methods=[MethodRecord.of(method) for method in chosen])
         typer.echo(document.model_dump_json(indent=2))
         return
 
     from rich.console import Console
     from rich.table import Table
 
+    if name is not None:
+        from app.cli.told import tell
+
+        tell(chosen[0], Console())
+        return
     table = Table("method", "title", "what it computes", box=None, pad_edge=False, header_style="bold")
-    for method in METHODS.values():
+    for method in chosen:
         table.add_row(method.name, method.title, method.summary)
     Console().print(table)
 

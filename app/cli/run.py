@@ -1,40 +1,41 @@
-"""One run without a service: photographs or clips in, one file out."""
+"""One run without a service: photographs or clips in, one file out, or all of them."""
 
-import os
 import re
-import shutil
 import tempfile
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from itertools import islice, zip_longest
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from app.cli.files import (
+    RECORD,
+    check_directory,
+    directory_of,
+    file_name,
+    put_all,
+    target,
+    write,
+    write_record,
+)
 from app.errors import InvalidInputError, NotFoundError
+from app.experiments.diagnostics import diagnose
 from app.experiments.model import Experiment, ExperimentInput, Sample
-from app.experiments.submission import Allowed, NewExperiment, NewInput, prepare
-from app.images.convert import Format, convert
+from app.experiments.run import METHOD_SHARE, only
+from app.experiments.submission import Allowed, Answer, NewExperiment, NewInput, prepare
 from app.images.crop import Frames, Rectangle
 from app.images.decode import Decoded, Limits, decode
-from app.methods.model import Context, Film, Method, Picture, Progress, Source
+from app.methods.effects import outputs_of
+from app.methods.model import Context, Film, Method, Picture, Progress, Source, StillParams
 from app.methods.registry import method as method_named
 from app.numbers import said
 from app.settings import Settings
-
-FORMATS: dict[str, Format] = {
-    ".png": "png",
-    ".jpg": "jpeg",
-    ".jpeg": "jpeg",
-    ".webp": "webp",
-    ".tif": "tiff",
-    ".tiff": "tiff",
-}
-FILMS = {".webm": "video/webm", ".mp4": "video/mp4"}
 
 
 @dataclass(frozen=True)
@@ -42,18 +43,20 @@ class Request:
     """What was typed: ``parameters``, ``crop`` and ``time`` still as text."""
 
     photos: tuple[Path, ...]
-    out: Path
+    out: Path | None
     method: str
+    output: str
+    directory: Path | None
     crop: tuple[str, ...]
     time: tuple[str, ...]
     size: str | None
-    depth: int
+    depth: int | None
     overwrite: bool
     parameters: Mapping[str, Any]
 
 
 def run(request: Request, settings: Settings, progress: Progress) -> str:
-    """Make the texture and write it; nothing is left at ``out`` if that fails.
+    """Make an output and write it, or all of them; nothing is left if that fails, and what was there stays.
 
     Returns
     -------
@@ -69,46 +72,82 @@ def run(request: Request, settings: Settings, progress: Progress) -> str:
     """
     started = time.perf_counter()
     method = method_named(request.method)
-    depth = _check_target(request, method)
+    if request.directory is not None:
+        return _all(request.directory, request, method, settings, progress, started)
+    return _one(request, method, settings, progress, started)
+
+
+def _one(request: Request, method: Method, settings: Settings, progress: Progress, started: float) -> str:
+    if request.out is None or not request.photos:
+        raise InvalidInputError("Name a photograph, or a clip, and then the file to write.")
+    depth = _depth(request.depth)
+    where = target(request.out, method, request.output, depth, overwrite=request.overwrite)
+    ready = _ready(request, Answer(where.output, depth), settings)
+    with ready.pictures(settings.threads, progress) as pictures:
+        # What is made before it is dropped, and what comes after it is not computed.
+        picture = next(only(pictures, where.output))
+        write(where, picture, depth)
+    size = f"{picture.width} × {picture.height} pixels"
+    if picture.frames > 1:
+        size += f", {picture.frames} frames"
+    seconds = time.perf_counter() - started
+    return f"{where.path}: {size}, {method.name}, seed {ready.params.seed}, {seconds:.2f} s"
+
+
+def _all(
+    directory: Path, request: Request, method: Method, settings: Settings, progress: Progress, started: float
+) -> str:
+    if request.output != "texture":
+        raise InvalidInputError("Give either --output for one of the outputs or --all for all of them.")
+    if not request.photos:
+        raise InvalidInputError("Name a photograph, or a clip.")
+    depth = _depth(request.depth)
+    check_directory(directory, (), overwrite=request.overwrite)
+    ready = _ready(request, Answer(None, depth), settings)
+    names = [file_name(output) for output in outputs_of(method, ready.params, len(ready.sources))]
+    check_directory(directory, [*names, RECORD], overwrite=request.overwrite)
+
+    def overall(stage: str, fraction: float) -> None:
+        progress(stage, METHOD_SHARE * fraction)
+
+    with directory_of(directory) as unfinished, ready.pictures(settings.threads, overall) as pictures:
+        written = list(put_all(pictures, depth, unfinished))
+        write_record(ready.experiment, written, diagnose(ready.sources, written, progress), unfinished)
+    seconds = time.perf_counter() - started
+    return f"{directory}: {len(written)} outputs and {RECORD}, {method.name}, seed {ready.params.seed}, {seconds:.2f} s"
+
+
+def _depth(typed: int | None) -> Literal[8, 16] | None:
+    if typed not in (None, 8, 16):
+        raise InvalidInputError(f"--depth is 8 or 16; got {typed}.")
+    return 16 if typed == 16 else 8 if typed == 8 else None
+
+
+@dataclass(frozen=True)
+class _Ready:
+    """What was typed, read and checked."""
+
+    experiment: Experiment
+    sources: list[Source]
+    params: StillParams
+
+    @contextmanager
+    def pictures(self, threads: int, progress: Progress) -> Iterator[Iterator[Picture]]:
+        """Run it; large pictures are files until the block ends."""
+        with tempfile.TemporaryDirectory() as scratch:
+            context = Context(self.experiment.depth, threads, progress, Path(scratch))
+            yield method_named(self.experiment.method).run(self.sources, self.params, context)
+
+
+def _ready(request: Request, answer: Answer, settings: Settings) -> _Ready:
+    method = method_named(request.method)
     photos = {str(path): _read(path, settings) for path in request.photos}
-    experiment = _experiment(request, photos, settings)
+    experiment = _experiment(request, answer, photos, settings)
     sources = [
         _source(photos[each.sample], each, moving=method.slot(index).moving)
         for index, each in enumerate(experiment.inputs)
     ]
-    params = method.params.model_validate(experiment.parameters)
-    with tempfile.TemporaryDirectory() as scratch:
-        context = Context(depth, settings.threads, progress, Path(scratch))
-        # The first pictures are the texture; the steps that the pages show after it are not computed.
-        pictures = list(islice(method.run(sources, params, context), method.textures))
-        texture = _write(request.out, pictures)
-    seconds = time.perf_counter() - started
-    size = f"{texture.width} × {texture.height} pixels"
-    if texture.frames > 1:
-        size += f", {texture.frames} frames"
-    return f"{request.out}: {size}, {method.name}, seed {params.seed}, {seconds:.2f} s"
-
-
-def _check_target(request: Request, method: Method) -> Literal[8, 16]:
-    if not request.photos:
-        raise InvalidInputError("Name a photograph, or a clip, and then the file to write.")
-    suffix = request.out.suffix.lower()
-    known = FILMS if method.moving else FORMATS
-    if suffix not in known:
-        what = "a video" if method.moving else "a picture"
-        raise InvalidInputError(
-            f"The method {method.name} makes {what}: the name of the file to write ends with one of "
-            f"{', '.join(known)}; got {request.out.name!r}."
-        )
-    if request.depth not in (8, 16):
-        raise InvalidInputError(f"--depth is 8 or 16; got {request.depth}.")
-    if request.depth == 16 and FORMATS.get(suffix) not in ("png", "tiff"):
-        raise InvalidInputError("16 bits per channel fit into PNG and TIFF only: name the file to write .png or .tif.")
-    if not request.out.parent.is_dir():
-        raise NotFoundError(f"There is no directory {request.out.parent}: make it first.")
-    if request.out.exists() and not request.overwrite:
-        raise InvalidInputError(f"{request.out} is there already: choose another name, or add --overwrite.")
-    return 16 if request.depth == 16 else 8
+    return _Ready(experiment, sources, method.params.model_validate(experiment.parameters))
 
 
 def _read(path: Path, settings: Settings) -> Decoded:
@@ -117,7 +156,7 @@ def _read(path: Path, settings: Settings) -> Decoded:
     return decode(path, Limits.by(settings))
 
 
-def _experiment(request: Request, photos: Mapping[str, Decoded], settings: Settings) -> Experiment:
+def _experiment(request: Request, answer: Answer, photos: Mapping[str, Decoded], settings: Settings) -> Experiment:
     """Validate what was typed, as the service does."""
     for given, what in ((request.crop, "crops"), (request.time, "time ranges")):
         if len(given) > len(request.photos):
@@ -133,7 +172,7 @@ def _experiment(request: Request, photos: Mapping[str, Decoded], settings: Setti
         base = inputs[0].crop or Rectangle(0, 0, first.pixels.shape[1], first.height)
         parameters["width"], parameters["height"] = output_size(request.size, base)
     return prepare(
-        NewExperiment(request.method, inputs, parameters),
+        NewExperiment(request.method, inputs, parameters, answer=answer),
         "",
         sample=lambda name: _as_sample(name, photos[name]),
         transparent=lambda sample, crop, frames: _holds_transparency(photos[sample.id], crop, frames),
@@ -197,21 +236,3 @@ def _holds_transparency(photo: Decoded, crop: Rectangle, frames: Frames) -> bool
     if photo.alpha is None:
         return False
     return bool((_cut(photo.alpha, photo, crop, frames) < 2**photo.depth - 1).any())
-
-
-def _write(out: Path, pictures: list[Picture]) -> Picture:
-    """Write the picture that is asked for by the file's name; returns it."""
-    suffix = out.suffix.lower()
-    unfinished = out.with_name(f".{out.name}.{os.getpid()}")
-    try:
-        if suffix in FILMS:
-            texture = next(picture for picture in pictures if picture.media_type == FILMS[suffix])
-            assert isinstance(texture.data, Path)
-            shutil.copyfile(texture.data, unfinished)
-        else:
-            texture = pictures[0]
-            unfinished.write_bytes(convert(texture.data, FORMATS[suffix])[0])
-        unfinished.replace(out)
-        return texture
-    finally:
-        unfinished.unlink(missing_ok=True)

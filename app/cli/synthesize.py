@@ -19,7 +19,7 @@ _OWN = {
     "files": (
         list[Path],
         typer.Argument(
-            help="The photograph or clip, or as many as the method takes, and then the file to write.",
+            help="The photograph or clip, or as many as the method takes, and then the file to write (not with --all).",
             metavar="PHOTO OUT",
         ),
         inspect.Parameter.empty,
@@ -50,8 +50,34 @@ _OWN = {
         typer.Option(help="Size of the texture in pixels, or as a multiple of the crop: x2.", metavar="WxH|xN"),
         None,
     ),
-    "depth": (int, typer.Option(help="Bits per channel, 8 or 16 (PNG and TIFF).", metavar="BITS"), 8),
-    "overwrite": (bool, typer.Option("--overwrite", help="Replace OUT if it is there."), False),
+    "output": (
+        str,
+        typer.Option(
+            help="Which output to write; `microtexture methods METHOD` lists them. A parameter that changes nothing of "
+            "it is refused.",
+            metavar="NAME",
+        ),
+        "texture",
+    ),
+    "directory": (
+        Path | None,
+        typer.Option(
+            "--all",
+            help="Write every output into this directory, which is made if it is not there, each under its name, and "
+            "record.json, which says how they were made.",
+            metavar="DIR",
+        ),
+        None,
+    ),
+    "depth": (
+        int | None,
+        typer.Option(
+            help="Bits per channel, 8 or 16 (PNG and TIFF); by default as the deepest of the photographs.",
+            metavar="BITS",
+        ),
+        None,
+    ),
+    "overwrite": (bool, typer.Option("--overwrite", help="Replace files that are there."), False),
 }
 
 
@@ -77,7 +103,9 @@ def command() -> Callable[..., None]:
         with plain_errors():
             own = {name: options.pop(name) for name in _OWN if name != "files"}
             given = {name: value for name, value in options.items() if value is not None}
-            request = Request(photos=tuple(files[:-1]), out=files[-1], parameters=given, **own)
+            everything = own["directory"] is not None
+            photos, out = (files, None) if everything else (files[:-1], files[-1])
+            request = Request(photos=tuple(photos), out=out, parameters=given, **own)
             with Bar() as progress:
                 done = run(request, read_settings(), progress)
         typer.echo(done)

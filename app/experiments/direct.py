@@ -1,4 +1,4 @@
-"""A texture straight from files: run once for one answer, and forgotten with it."""
+"""An output straight from files: run once for one answer, and forgotten with it."""
 
 import asyncio
 from collections.abc import Callable, Mapping, Sequence
@@ -11,9 +11,12 @@ from app.experiments.following import Following
 from app.experiments.housekeeping import Housekeeping
 from app.experiments.intake import SampleIntake
 from app.experiments.model import Experiment, Sample, Status
-from app.experiments.outputs import AnyFormat, Outputs
-from app.experiments.submission import NewExperiment, NewInput
+from app.experiments.outputs import AnyFormat, Outputs, file_of
+from app.experiments.pictures import PNG, check_deep
+from app.experiments.submission import Answer, NewExperiment, NewInput
 from app.images.crop import Frames, Rectangle
+from app.methods.effects import possible_output
+from app.methods.registry import method as method_named
 
 
 class Direct:
@@ -53,18 +56,24 @@ class Direct:
         crops: Sequence[Rectangle | None],
         frames: Sequence[Frames | None],
         parameters: Mapping[str, Any],
+        output: str,
         file_format: AnyFormat | None,
         depth: Literal[8, 16] | None,
     ) -> tuple[bytes, str]:
         """The picture and its media type."""
         # It goes on to its end if the caller hangs up: only then is known what to forget.
-        begun = asyncio.ensure_future(asyncio.to_thread(self._begin, uploads, method, crops, frames, parameters))
+        begun = asyncio.ensure_future(
+            asyncio.to_thread(self._begin, uploads, method, crops, frames, parameters, output, file_format, depth)
+        )
         try:
             experiment = await asyncio.shield(begun)
             finished = await self._following.wait(experiment.id, float("inf"))
             if finished.status is not Status.SUCCEEDED:
                 raise ConflictError(finished.error or "The run was cancelled.")
-            path, media_type = await self._outputs.converted(experiment.id, "texture", file_format, depth)
+            made, path = await asyncio.to_thread(self._outputs.output, experiment.id, finished.wanted)
+            media_type = made.media_type
+            if media_type == PNG:
+                path, media_type = await self._outputs.converted(experiment.id, made.name, file_format, depth)
             return await asyncio.to_thread(path.read_bytes), media_type
         finally:
             await asyncio.shield(self._forgotten(begun))
@@ -76,9 +85,15 @@ class Direct:
         crops: Sequence[Rectangle | None],
         frames: Sequence[Frames | None],
         parameters: Mapping[str, Any],
+        output: str,
+        file_format: AnyFormat | None,
+        depth: Literal[8, 16] | None,
     ) -> Experiment:
         samples: list[Sample] = []
         try:
+            answer = Answer(file_of(possible_output(method_named(method), output), file_format), depth)
+            if depth == 16:
+                check_deep(file_format)
             for given, what, field in ((crops, "crops", "crop"), (frames, "time ranges", "frames")):
                 if len(given) > len(uploads):
                     raise InvalidInputError(
@@ -89,7 +104,7 @@ class Direct:
                 samples.append(self._intake.add(upload, None))
             parts = zip_longest(samples, crops, frames)
             inputs = tuple(NewInput(sample.id, crop, time) for sample, crop, time in parts)
-            return self._submit(NewExperiment(method, inputs, parameters, listed=False))
+            return self._submit(NewExperiment(method, inputs, parameters, listed=False, answer=answer))
         except BaseException:
             for sample in samples:
                 self._housekeeping.remove_sample(sample.id)

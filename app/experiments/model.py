@@ -102,8 +102,9 @@ class Experiment:
     """One run: method, inputs and parameters (complete: defaults and sizes filled in), and what came of it.
 
     ``owner`` is the SHA-256 (hex) of the owner's token. ``timings`` are seconds by stage, in order. ``diagnostics``
-    is what was measured of it (see `app.experiments.diagnostics`). A ``transient`` one is made for a single answer:
-    only its main output is computed, and it goes with the answer.
+    is what was measured of it (see `app.experiments.diagnostics`). ``depth`` is the bits per channel of its pictures:
+    that of its deepest sample. A ``transient`` one is made for a single answer: only the output that is ``wanted`` is
+    kept, and it goes with the answer.
     """
 
     id: str
@@ -122,6 +123,8 @@ class Experiment:
     started_at: datetime | None = None
     finished_at: datetime | None = None
     transient: bool = False
+    depth: Literal[8, 16] = 8
+    wanted: str = "texture"
 
     def output(self, name: str) -> Output | None:
         """The output of this name, or None."""

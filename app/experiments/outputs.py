@@ -2,19 +2,57 @@
 
 import asyncio
 from pathlib import Path
-from typing import Literal
+from typing import Literal, Protocol
 
 from app.errors import AppError, BusyError, InvalidInputError, NotFoundError
 from app.experiments.following import Following
 from app.experiments.model import Experiment, Output
-from app.experiments.pictures import DERIVED, FilmFormat, Pictures
+from app.experiments.pictures import DERIVED, PNG, FilmFormat, Pictures, check_deep
 from app.experiments.ports import BlobStore, Executor, ExperimentStore
-from app.experiments.run import DEEP, DEEP_TEXTURE
-from app.images.convert import Format
+from app.experiments.run import deep_job, deep_name
+from app.images.convert import Format, depth_of
+from app.methods.effects import possible_output, refuse_deep
+from app.methods.registry import method as method_named
 
 AnyFormat = Format | FilmFormat
 MP4_SUFFIX = "-mp4"  # ends the name of a film's second file: see `app.methods.films`
-DEEP_SECONDS = 120.0  # how long a download waits for its texture at 16 bits
+DEEP_SECONDS = 120.0  # how long a download waits for its output at 16 bits
+
+
+class Named(Protocol):
+    """An output, made or announced."""
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def media_type(self) -> str: ...
+
+    @property
+    def film(self) -> bool: ...
+
+
+def file_of(output: Named, file_format: AnyFormat | None) -> str:
+    """Name the output that is this one in this format: a film is two of them.
+
+    Raises
+    ------
+    InvalidInputError
+        At ``format``, if it does not come in this one.
+    """
+    if output.film:
+        if file_format is None or output.media_type == f"video/{file_format}":
+            return output.name
+        if file_format in ("webm", "mp4"):
+            return output.name.removesuffix(MP4_SUFFIX) + (MP4_SUFFIX if file_format == "mp4" else "")
+        raise InvalidInputError(
+            "This is a moving picture: ask for webm or mp4, or take one of the still outputs, such as 'cube'.", "format"
+        )
+    if output.media_type != PNG and file_format is not None and output.media_type != f"image/{file_format}":
+        raise InvalidInputError("This picture comes only as it is stored: leave the format out.", "format")
+    if file_format == "webm" or file_format == "mp4":
+        raise InvalidInputError("This is a still picture: ask for png, jpeg, webp or tiff.", "format")
+    return output.name
 
 
 class Outputs:
@@ -25,7 +63,7 @@ class Outputs:
     store, blobs, executor, pictures, following
         Those of the service.
     queue_limit : int
-        Jobs that may wait before another texture at 16 bits is refused.
+        Jobs that may wait before another output at 16 bits is refused.
     """
 
     def __init__(
@@ -57,22 +95,21 @@ class Outputs:
     async def converted(
         self, experiment_id: str, name: str, file_format: AnyFormat | None, depth: Literal[8, 16] | None
     ) -> tuple[Path, str]:
-        """An output in another format, and its media type; by default PNG, and WebM of a film."""
+        """An output in another format, and its media type; by default as it is stored, and WebM of a film."""
         experiment = await asyncio.to_thread(self._store.get, experiment_id)
         output = self._output(experiment, name)
-        if output.frames > 1:
-            film = self._film(experiment, output, file_format, depth)
-            return self._blobs.path(film.digest), film.media_type
-        if file_format == "webm" or file_format == "mp4":
-            raise InvalidInputError("This is a still picture: ask for png, jpeg, webp or tiff.", "format")
-        file_format = file_format or "png"
+        output = self._output(experiment, file_of(output, file_format or ("webm" if output.film else None)))
         if depth == 16:
-            self._pictures.check_deep(file_format)
-            output = await self._deep_texture(experiment, output)
-        return await asyncio.to_thread(self._pictures.converted, output, file_format)
+            check_deep(file_format)
+            output = await self._deep(experiment, output)
+        if output.media_type != PNG:
+            return self._blobs.path(output.digest), output.media_type
+        assert file_format != "webm"  # `file_of` lets these through for films only
+        assert file_format != "mp4"
+        return await asyncio.to_thread(self._pictures.converted, output, file_format or "png", depth)
 
     def failed(self, job: str, failure: str) -> None:
-        """Remember why a texture at 16 bits could not be made, for who waits for it."""
+        """Remember why an output at 16 bits could not be made, for who waits for it."""
         self._failures[job] = failure
 
     def _output(self, experiment: Experiment, name: str) -> Output:
@@ -84,39 +121,24 @@ class Outputs:
         names = ", ".join(output.name for output in experiment.outputs if output.listed)
         raise NotFoundError(f"This experiment has no output {name!r}. It has: {names or 'none'}.")
 
-    def _film(
-        self, experiment: Experiment, output: Output, file_format: AnyFormat | None, depth: Literal[8, 16] | None
-    ) -> Output:
-        """The output's film in this format: both are stored."""
-        if depth == 16:
-            raise InvalidInputError("A video has 8 bits per channel: leave the depth out.", "depth")
-        name = output.name.removesuffix(MP4_SUFFIX)
-        files = {file.media_type: file for file in experiment.outputs if file.name in (name, name + MP4_SUFFIX)}
-        found = files.get(f"video/{file_format or 'webm'}")
-        if found is None:
-            raise InvalidInputError(
-                "This is a moving picture: ask for webm or mp4, or take one of the still outputs, such as 'cube'."
-                if output.film
-                else "This picture comes only as it is stored: leave the format out.",
-                "format",
-            )
-        return found
-
-    async def _deep_texture(self, experiment: Experiment, output: Output) -> Output:
-        if output.name != "texture":
-            raise InvalidInputError("Only the texture itself comes at 16 bits per channel.", "depth")
-        deep = experiment.output(DEEP_TEXTURE)
+    async def _deep(self, experiment: Experiment, output: Output) -> Output:
+        """The same output at 16 bits; computed from the samples, in a job of its own, if it is not there yet."""
+        if not output.film and depth_of(self._blobs.path(output.digest)) == 16:
+            return output
+        refuse_deep(possible_output(method_named(experiment.method), output.name), experiment.depth)
+        name, job = deep_name(output.name), deep_job(experiment.id, output.name)
+        deep = experiment.output(name)
         if deep is not None:
             return deep
-        job = f"{experiment.id}{DEEP}"
         if self._executor.snapshot(job) is None:
             if self._executor.waiting >= self._queue_limit:
                 raise BusyError("Too many experiments wait already. Try again in a minute.")
             self._failures.pop(job, None)
             self._executor.submit(job)
         if not await self._following.left(job, DEEP_SECONDS):
-            raise BusyError("The texture at 16 bits is still being computed. Try again in a minute.")
-        deep = (await asyncio.to_thread(self._store.get, experiment.id)).output(DEEP_TEXTURE)
+            raise BusyError(f"The {output.name} at 16 bits is still being computed. Try again in a minute.")
+        deep = (await asyncio.to_thread(self._store.get, experiment.id)).output(name)
         if deep is None:
-            raise AppError(self._failures.pop(job, "The texture at 16 bits could not be computed. Try again."))
+            words = f"The {output.name} at 16 bits could not be computed. Try again."
+            raise AppError(self._failures.pop(job, words))
         return deep

@@ -9,7 +9,7 @@ from app.errors import InvalidInputError, NotFoundError
 from app.experiments.cache import FileCache
 from app.experiments.model import Output, Sample
 from app.experiments.ports import BlobStore
-from app.images.convert import PREVIEW, THUMBNAIL, Format, convert, flattened, pair, rendition, thumbnails
+from app.images.convert import PREVIEW, THUMBNAIL, Format, convert, depth_of, flattened, pair, rendition, thumbnails
 from app.images.png import encode_png
 from app.images.strip import read_frame
 from app.images.video.reader import first_frame
@@ -83,13 +83,15 @@ class Pictures:
         name = f"{sample.digest}-{sample.height}-{sample.rate:g}.{file_format}"
         return self._cache.file(name, write), f"video/{file_format}"
 
-    def converted(self, output: Output, file_format: Format) -> tuple[Path, str]:
-        """An output in this format, and its media type."""
+    def converted(self, output: Output, file_format: Format, depth: Literal[8, 16] | None = None) -> tuple[Path, str]:
+        """A picture in this format, and its media type; where 8 bits are asked for, with no more than those."""
         stored = self._blobs.path(output.digest)
         media_type = f"image/{file_format}"
-        if output.media_type == media_type:
+        narrowed: Literal[8] | None = 8 if depth == 8 and depth_of(stored) == 16 else None
+        if output.media_type == media_type and not narrowed:
             return stored, media_type
-        return self._cache.get(f"{output.digest}.{file_format}", lambda: convert(stored, file_format)[0]), media_type
+        name = f"{output.digest}{'-8' if narrowed else ''}.{file_format}"
+        return self._cache.get(name, lambda: convert(stored, file_format, narrowed)[0]), media_type
 
     def derived(self, name: str, crop: Output, texture: Output) -> tuple[Output, Path]:
         """One of the pictures that stand for an experiment in lists and elsewhere; made when first asked for.
@@ -130,17 +132,18 @@ class Pictures:
             return stored
         return self._cache.get(f"{output.digest}-first.png", lambda: encode_png(first_frame(stored)))
 
-    def check_deep(self, file_format: Format) -> None:
-        """Raise `InvalidInputError` if files of this format have no 16 bits per channel."""
-        if file_format not in DEEP_FORMATS:
-            raise InvalidInputError(
-                f"{file_format.upper()} has 8 bits per channel only: ask for png or tiff, or for depth 8.", "depth"
-            )
-
 
 def _part(sample: Sample, frame: int) -> str:
     """Begin a file's name; one strip may be cut into frames of several heights."""
     return f"{sample.digest}-{sample.height}-{frame}" if sample.moving else sample.digest
+
+
+def check_deep(file_format: Format | FilmFormat | None) -> None:
+    """Raise `InvalidInputError` if files of this format have no 16 bits per channel."""
+    if file_format not in (None, *DEEP_FORMATS):
+        raise InvalidInputError(
+            f"{file_format.upper()} has 8 bits per channel only: ask for png or tiff, or for depth 8.", "depth"
+        )
 
 
 def check_frame(sample: Sample, frame: int) -> None:

@@ -142,7 +142,7 @@ Run = Callable[[Settings, str, Progress], None]
 
 
 class Executor(Protocol):
-    """The engine that runs jobs. A job is an experiment's id, or ``id@16`` for its texture at 16 bits.
+    """The engine that runs jobs: experiments, by their ids, and outputs at 16 bits, by `app.experiments.run.deep_job`.
 
     It calls ``ended(job, failure)`` from a thread of its own once a job has left it: ``failure`` is None if the
     worker's function returned or the job was cancelled, otherwise a sentence for people. What a worker computes it

@@ -5,7 +5,6 @@ import time
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
-from itertools import islice
 from pathlib import Path
 from typing import Literal
 
@@ -24,8 +23,7 @@ log = logging.getLogger(__name__)
 
 MAX_ATTEMPTS = 6  # more often than any row of restarts would start one: it is the experiment that ends the service
 METHOD_SHARE = 0.92  # of the bar; the rest is for what is done around the method
-DEEP = "@16"  # ends the name of a job that computes the texture of a finished experiment at 16 bits
-DEEP_TEXTURE = ".texture-16"
+DEEP = "@16:"  # in the name of a job, between a finished experiment and the output to compute at 16 bits
 
 
 def run_job(store: ExperimentStore, blobs: BlobStore, job: str, progress: Progress, *, threads: int) -> None:
@@ -36,7 +34,7 @@ def run_job(store: ExperimentStore, blobs: BlobStore, job: str, progress: Progre
     store, blobs
         Those of this process.
     job : str
-        An experiment's id, or ``id@16`` for its texture at 16 bits.
+        An experiment's id, or what `deep_job` makes of it.
     progress : Progress
         Reports; raises when the job is cancelled or out of time.
     threads : int
@@ -45,12 +43,17 @@ def run_job(store: ExperimentStore, blobs: BlobStore, job: str, progress: Progre
     Raises
     ------
     AppError
-        From ``id@16`` only: whatever goes wrong with an experiment itself is recorded as its failure.
+        From a `deep_job` only: whatever goes wrong with an experiment itself is recorded as its failure.
     """
-    if job.endswith(DEEP):
-        _add_deep_texture(store, blobs, job.removesuffix(DEEP), progress, threads)
+    experiment_id, deep, output = job.partition(DEEP)
+    if deep:
+        try:
+            _add_deep(store, blobs, experiment_id, output, progress, threads)
+        except CancelledError:
+            raise
+        except Exception as error:
+            raise AppError(_in_words(job, error)) from error
         return
-    experiment_id = job
     experiment = store.start(experiment_id)
     if experiment is None:
         return
@@ -60,18 +63,50 @@ def run_job(store: ExperimentStore, blobs: BlobStore, job: str, progress: Progre
         _compute(store, blobs, experiment, progress, threads)
     except CancelledError:
         return  # recorded before the worker was told
-    except AppError as error:
-        store.fail(experiment_id, error.message)
-    except MemoryError:
-        store.fail(experiment_id, "There was not enough memory for this experiment: try a smaller width and height.")
-    except OSError:
-        log.exception("experiment %s: reading or writing its files failed", experiment_id)
-        store.fail(
-            experiment_id, "The service could not read or write its files. Its operator finds the reason in the log."
-        )
-    except Exception:
-        log.exception("experiment %s failed", experiment_id)
-        store.fail(experiment_id, "Something went wrong inside the method. This is a fault of the service, not yours.")
+    except Exception as error:
+        store.fail(experiment_id, _in_words(job, error))
+
+
+def deep_job(experiment_id: str, output: str) -> str:
+    """Name the job that computes an output of a finished experiment at 16 bits, and keeps it as `deep_name`."""
+    return f"{experiment_id}{DEEP}{output}"
+
+
+def deep_name(output: str) -> str:
+    """Name an output at 16 bits beside the one of 8; it is not listed.
+
+    Examples
+    --------
+    >>> deep_name("texture")
+    '.texture-16'
+    """
+    return f".{output}-16"
+
+
+def only(pictures: Iterable[Picture], wanted: str) -> Iterator[Picture]:
+    """Run a method until it yields the picture of this name, and no further; what came before is dropped."""
+    for picture in pictures:
+        if picture.name == wanted:
+            yield picture
+            return
+        _drop(picture)
+
+
+def _drop(picture: Picture) -> None:
+    if isinstance(picture.data, Path):
+        picture.data.unlink(missing_ok=True)
+
+
+def _in_words(job: str, error: Exception) -> str:
+    """Say what went wrong, for people; what they cannot do anything about is in the log."""
+    if isinstance(error, AppError):
+        return error.message
+    if isinstance(error, MemoryError):
+        return "There was not enough memory for this experiment: try a smaller width and height."
+    log.error("job %s failed", job, exc_info=error)
+    if isinstance(error, OSError):
+        return "The service could not read or write its files. Its operator finds the reason in the log."
+    return "Something went wrong inside the method. This is a fault of the service, not yours."
 
 
 def _compute(
@@ -79,9 +114,9 @@ def _compute(
 ) -> None:
     stages = Stages(progress)
     sources = _read(store, blobs, experiment, stages)
-    pictures = _pictures(experiment, sources, 8, threads, stages, blobs.temporary_directory)
+    pictures = _pictures(experiment, sources, experiment.depth, threads, stages, blobs.temporary_directory)
     if experiment.transient:
-        pictures = islice(pictures, method_named(experiment.method).textures)
+        pictures = only(pictures, experiment.wanted)
     with _staged(blobs, pictures) as staged:
         diagnostics = {} if experiment.transient else diagnose(sources, staged, stages)
         stages("writing", 1.0)
@@ -90,21 +125,32 @@ def _compute(
             store.succeed(experiment.id, outputs, stages.seconds(), diagnostics)
 
 
-def _add_deep_texture(
-    store: ExperimentStore, blobs: BlobStore, experiment_id: str, progress: Progress, threads: int
+def _add_deep(
+    store: ExperimentStore, blobs: BlobStore, experiment_id: str, output: str, progress: Progress, threads: int
 ) -> None:
     try:
         experiment = store.get(experiment_id)
     except (NotFoundError, DeletedError):
         return
-    if experiment.status is not Status.SUCCEEDED or experiment.output(DEEP_TEXTURE) is not None:
+    if experiment.status is not Status.SUCCEEDED or experiment.output(deep_name(output)) is not None:
         return
     stages = Stages(progress)
     sources = _read(store, blobs, experiment, stages)
-    pictures = islice(_pictures(experiment, sources, 16, threads, stages, blobs.temporary_directory), 1)
-    with _staged(blobs, pictures) as staged, blobs.lease():
+    pictures = _pictures(experiment, sources, 16, threads, stages, blobs.temporary_directory)
+    with _staged(blobs, _deep(pictures, output)) as staged, blobs.lease():
         for picture, path in staged:
-            store.add_output(experiment_id, replace(_kept(blobs, picture, path), name=DEEP_TEXTURE))
+            store.add_output(experiment_id, replace(_kept(blobs, picture, path), name=deep_name(picture.name)))
+
+
+def _deep(pictures: Iterable[Picture], output: str) -> Iterator[Picture]:
+    """The wanted picture, and the still textures that are made before it: they will be asked for next."""
+    for picture in pictures:
+        if picture.name == output or (picture.kind == "texture" and picture.frames == 1):
+            yield picture
+        else:
+            _drop(picture)
+        if picture.name == output:
+            return
 
 
 def _read(store: ExperimentStore, blobs: BlobStore, experiment: Experiment, progress: Progress) -> list[Source]:

@@ -21,7 +21,7 @@ from app.experiments.outputs import AnyFormat, Outputs
 from app.experiments.ownership import same, token_digest
 from app.experiments.pictures import FilmFormat, Pictures
 from app.experiments.ports import BlobStore, Executor, ExperimentStore
-from app.experiments.run import DEEP
+from app.experiments.run import DEEP, deep_job
 from app.experiments.submission import NewExperiment
 from app.images.crop import Frames, Rectangle
 from app.settings import Settings
@@ -216,7 +216,7 @@ class Service:
     async def converted(
         self, experiment_id: str, name: str, file_format: AnyFormat | None, depth: Literal[8, 16] | None = None
     ) -> tuple[Path, str]:
-        """An output in another format, and its media type. The texture at 16 bits is computed when first asked for.
+        """An output in another format, and its media type. At 16 bits it is computed when first asked for.
 
         Raises
         ------
@@ -235,10 +235,11 @@ class Service:
         crops: Sequence[Rectangle | None],
         parameters: Mapping[str, Any],
         frames: Sequence[Frames | None] = (),
+        output: str = "texture",
         file_format: AnyFormat | None = None,
         depth: Literal[8, 16] | None = None,
     ) -> tuple[bytes, str]:
-        """A texture straight from files: the picture and its media type. Nothing of it is kept, the files included.
+        """An output straight from files: the picture and its media type. Nothing of it is kept, the files included.
 
         Parameters
         ----------
@@ -248,6 +249,8 @@ class Service:
         crops, frames : sequence of Rectangle or None, and of Frames or None
             Of the files, in their order; for those at the end that are left out, and for None, as in `NewInput`.
         parameters : mapping
+        output : str
+            Name of the output that is the answer.
         file_format, depth
             Of the answer.
 
@@ -262,6 +265,7 @@ class Service:
             crops=crops,
             frames=frames,
             parameters=parameters,
+            output=output,
             file_format=file_format,
             depth=depth,
         )
@@ -281,8 +285,9 @@ class Service:
         return experiment
 
     def _delete(self, experiment: Experiment) -> None:
-        self._executor.cancel(f"{experiment.id}{DEEP}")
         self._housekeeping.delete(experiment)
+        for output in experiment.outputs:  # afterwards: who waits for one then learns why it does not come
+            self._executor.cancel(deep_job(experiment.id, output.name))
 
     def _forget(self, experiment: Experiment) -> None:
         self._store.cancel(experiment.id)
@@ -292,7 +297,7 @@ class Service:
     def _ended(self, job: str, failure: str | None) -> None:
         """Record a failure of the worker itself; what a worker computed it has recorded."""
         if failure is not None:
-            if job.endswith(DEEP):
+            if DEEP in job:
                 self._outputs.failed(job, failure)
             else:
                 self._housekeeping.record_failure(job, failure)

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
@@ -12,6 +12,7 @@ from app.errors import InvalidInputError, TooLargeError
 from app.experiments.model import Experiment, ExperimentInput, Sample
 from app.experiments.ownership import new_identifier
 from app.images.crop import Frames, Rectangle
+from app.methods.effects import output_named, outputs_of, refuse_deep, without_effect
 from app.methods.fields import fields, reason, requirement
 from app.methods.model import Method, MovingParams, Size, Slot, StillParams
 from app.methods.registry import method as method_named
@@ -47,6 +48,18 @@ class Allowed:
 
 
 @dataclass(frozen=True)
+class Answer:
+    """What is wanted of a run that is made for one answer: the name of an output, None for all, and its bits.
+
+    Without a ``depth`` pictures have that of the deepest sample. What was typed and changes nothing of the answer is
+    refused; of an experiment that is kept all is there, and its parameters may be those of another one.
+    """
+
+    output: str | None = "texture"
+    depth: Literal[8, 16] | None = None
+
+
+@dataclass(frozen=True)
 class NewExperiment:
     """What a person asks for; ``parameters`` as they came, unchecked."""
 
@@ -54,6 +67,7 @@ class NewExperiment:
     inputs: tuple[NewInput, ...]
     parameters: Mapping[str, Any]
     listed: bool = True
+    answer: Answer | None = None
 
 
 def prepare(
@@ -89,11 +103,13 @@ def prepare(
     method = method_named(request.method)
     _check_count(method, len(request.inputs))
     inputs, sizes = [], []
+    depths = {8}
     for index, wanted_input in enumerate(request.inputs):
         found = sample(wanted_input.sample)
         frames = _frames(wanted_input, found, method.slot(index), f"inputs.{index}")
         crop = _crop(wanted_input, found, frames, f"inputs.{index}.crop", transparent)
         inputs.append(ExperimentInput(found.id, crop, frames))
+        depths.add(found.depth)
         sizes.append(Size(crop.width, crop.height, found.channels, frames.count))
     params = _params(method, request.parameters)
     width, height = method.size(sizes)
@@ -103,6 +119,9 @@ def prepare(
     params = params.model_copy(update=filled)
     _check_pixels(method, params, allowed)
     method.check(sizes, params)
+    if request.answer is not None:
+        _check_answer(method, sizes, params, request, max(depths))
+        depths.add(request.answer.depth or 8)
     _check_memory(method, _memory(method, sizes, params), allowed)
     return Experiment(
         id=new_identifier(),
@@ -112,6 +131,8 @@ def prepare(
         listed=request.listed,
         owner=owner,
         created_at=datetime.now(UTC),
+        depth=16 if 16 in depths else 8,
+        wanted=(request.answer and request.answer.output) or "texture",
     )
 
 
@@ -155,6 +176,18 @@ def _check_pixels(method: Method, params: StillParams, limits: Allowed) -> None:
             f"A texture of {params.width} × {params.height} has {pixels / 1e6:.0f} megapixels; {maker} makes at most "
             f"{allowed / 1e6:.0f}: ask for a smaller width or height."
         )
+
+
+def _check_answer(method: Method, sizes: list[Size], params: StillParams, request: NewExperiment, deepest: int) -> None:
+    assert request.answer is not None
+    wanted = [output.name for output in outputs_of(method, params, len(sizes))]
+    if request.answer.output is not None:
+        output = output_named(method, request.answer.output, params, len(sizes))
+        wanted = [output.name]
+        if request.answer.depth == 16:
+            refuse_deep(output, deepest)
+    for name, words in without_effect(method, sizes, params, request.parameters.keys(), wanted).items():
+        raise InvalidInputError(words, f"parameters.{name}")
 
 
 def _check_memory(method: Method, needed: int, allowed: Allowed) -> None:

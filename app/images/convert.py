@@ -66,6 +66,12 @@ def convert(png: bytes | Path, file_format: Format, depth: Literal[8, 16] | None
     return _lossy(_image(array), file_format, JPEG_QUALITY if file_format == "jpeg" else WEBP_QUALITY), media_type
 
 
+def depth_of(path: Path) -> int:
+    """Bits per channel of a PNG file."""
+    with path.open("rb") as file:
+        return file.read(DEPTH_AT + 1)[DEPTH_AT]
+
+
 def rendition(png_path: Path, longest_side: int | None) -> tuple[bytes, str]:
     """Make a picture for a browser: 8 bits per channel, no side longer than ``longest_side`` pixels; never enlarged.
 

@@ -23,6 +23,8 @@ class Announced:
         The parameters that change it, beside those that every method has; by default all of them.
     deep : bool
         Whether its PNG file has 16 bits per channel where that depth is asked for.
+    as_given : bool
+        Whether it is an input as it came, which has the depth of its sample and no other.
     given : callable ``(params, inputs) -> bool``
         Whether it is given under these parameters, of so many inputs.
     condition : str
@@ -34,6 +36,7 @@ class Announced:
     media_type: str = "image/png"
     of: tuple[str, ...] | None = None
     deep: bool = True
+    as_given: bool = False
     given: Condition = _always
     condition: str = ""
 
@@ -66,14 +69,15 @@ def views(*names: str, of: tuple[str, ...] | None = None, deep: bool = True) -> 
 
 def shown_inputs(most: int = 1, least: int = 1) -> tuple[Announced, ...]:
     """Announce the crops: ``crop``, and ``crop-2``, … of further inputs, of which ``least`` are always there."""
-    return views("crop", of=()) + tuple(
+    return tuple(
         Announced(
-            f"crop-{number}",
+            f"crop-{number}" if number > 1 else "crop",
             of=(),
+            as_given=True,
             given=from_inputs(number),
             condition="" if number <= least else f"there are {number} inputs or more",
         )
-        for number in range(2, most + 1)
+        for number in range(1, most + 1)
     )
 
 

@@ -31,18 +31,50 @@ def output_named(method: Method, name: str, params: StillParams, inputs: int) ->
     InvalidInputError
         At ``output``, with the names there are, or with what it takes to be given that one.
     """
-    given = outputs_of(method, params, inputs)
-    found = next((output for output in given if output.name == name), None)
-    if found is not None:
+    found = possible_output(method, name)
+    if found.given(params, inputs):
         return found
-    names = ", ".join(output.name for output in given)
-    other = next((output for output in method.outputs if output.name == name), None)
-    if other is None:
-        raise InvalidInputError(f"The method {method.name} gives no output {name!r}; here it gives: {names}.", "output")
+    names = ", ".join(output.name for output in outputs_of(method, params, inputs))
     raise InvalidInputError(
-        f"The method {method.name} gives the output {name!r} only where {other.condition}; here it gives: {names}.",
+        f"The method {method.name} gives the output {name!r} only where {found.condition}; here it gives: {names}.",
         "output",
     )
+
+
+def possible_output(method: Method, name: str) -> Announced:
+    """The output of this name, whether or not it is given under the parameters at hand.
+
+    Raises
+    ------
+    InvalidInputError
+        At ``output``, with all the names there are.
+    """
+    found = next((output for output in method.outputs if output.name == name), None)
+    if found is None:
+        names = ", ".join(output.name for output in method.outputs)
+        raise InvalidInputError(f"The method {method.name} gives no output {name!r}. It can give: {names}.", "output")
+    return found
+
+
+def refuse_deep(output: Announced, deepest: int) -> None:
+    """Refuse 16 bits per channel for what has 8, whatever is asked for.
+
+    Parameters
+    ----------
+    output : Announced
+    deepest : int
+        Bits per channel of the deepest sample.
+
+    Raises
+    ------
+    InvalidInputError
+        At ``depth``.
+    """
+    if output.film:
+        raise InvalidInputError("A video has 8 bits per channel: leave the depth out.", "depth")
+    if not output.deep or (output.as_given and deepest == 8):
+        whose = "the 8 bits per channel of its sample" if output.deep else "8 bits per channel"
+        raise InvalidInputError(f"The output {output.name!r} has {whose}: leave the depth out.", "depth")
 
 
 def without_effect(
@@ -71,17 +103,17 @@ def without_effect(
     for name, field in method.params.model_fields.items():
         if name not in given or name in COMMON:
             continue
-        title, default = field.title or name, getattr(params, name) == field.default
+        said, default = f"{name} (“{field.title}”)", getattr(params, name) == field.default
         changed = [output for output in method.outputs if output.changed_by(name)]
         names = [output.name for output in changed if output in present]
         makes = all(output.condition for output in changed)  # then a value that makes none asks for nothing
         if not default and name in idle:
-            found[name] = f"“{title}” would change nothing here: {idle[name]}"
+            found[name] = f"{said} would change nothing here: {idle[name]}"
         elif (names if makes else not default) and not set(names) & set(wanted):
-            others = "ask for what it changes, or for all outputs, or " if names else ""
+            others = "name one of those as the output, or ask for all, or " if names else ""
             found[name] = (
-                f"“{title}” changes {_listed(names) or 'nothing'}, and {_listed(list(wanted))} is asked for: "
-                f"{others}leave it out."
+                f"{said} changes {_listed(names) or 'nothing'}, and only {_listed(list(wanted))} is asked for: {others}"
+                "leave it out."
             )
     return found
 

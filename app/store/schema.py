@@ -65,6 +65,8 @@ experiments = sa.Table(
     sa.Column("error", sa.Text),
     sa.Column("started_at", Moment),
     sa.Column("finished_at", Moment, index=True),
+    sa.Column("depth", sa.Integer, nullable=False, server_default="8"),
+    sa.Column("wanted", sa.Text, nullable=False, server_default="texture"),
     sa.Index("experiments_by_age", "status", "listed", "created_at", "id"),
 )
 

@@ -22,6 +22,11 @@ def address(experiment: Experiment, name: str) -> str:
     return f"/api/v1/experiments/{experiment.id}/outputs/{name}"
 
 
+def shown(experiment: Experiment, name: str) -> str:
+    """Where an output is as pages show it: a screen shows no more than 8 bits, and they are half as many bytes."""
+    return f"{address(experiment, name)}{'?depth=8' if experiment.depth == 16 else ''}"
+
+
 def clip_of(experiment: Experiment, output: Output) -> Clip | None:
     """The film that an output is, None for a picture."""
     if not output.film:

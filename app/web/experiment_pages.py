@@ -146,11 +146,12 @@ def _downloads(experiment: Experiment) -> Iterator[tuple[str, str]]:
         yield "Animated WebP", f"{address(experiment, 'preview')}?download=true"
         yield "Everything, ZIP", f"/api/v1/experiments/{experiment.id}/outputs.zip"
         return
-    yield "PNG, 8 bit", f"{texture}&format=png&depth=8"
-    yield "PNG, 16 bit", f"{texture}&format=png&depth=16"
+    depths = (16, 8) if experiment.depth == 16 else (8, 16)  # the sample's own first
+    for depth in depths:
+        yield f"PNG, {depth} bit", f"{texture}&format=png&depth={depth}"
     yield "JPEG", f"{texture}&format=jpeg"
     yield "WebP", f"{texture}&format=webp"
-    yield "TIFF", f"{texture}&format=tiff"
+    yield f"TIFF, {depths[0]} bit", f"{texture}&format=tiff&depth={depths[0]}"
     yield "Everything, ZIP", f"/api/v1/experiments/{experiment.id}/outputs.zip"
 
 

@@ -2,13 +2,13 @@
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from app.errors import NotFoundError
 from app.experiments.model import Experiment, Output
 from app.methods.model import Method
 from app.methods.registry import method
-from app.web.clips import Clip, address, clip_of, moves
+from app.web.clips import Clip, address, clip_of, moves, shown
 from app.web.inputs import ORDINALS
 from app.web.templating import label
 
@@ -19,7 +19,8 @@ CUBES = ("crop-cube", "cube")
 class Pane:
     """One picture or film.
 
-    ``page`` is where its title leads, ``delta`` its structure index where that is known, ``clip`` how a film plays.
+    ``page`` is where its title leads, ``delta`` its structure index where that is known, ``clip`` how a film plays,
+    ``deep`` where it is at 16 bits.
     """
 
     title: str
@@ -30,6 +31,7 @@ class Pane:
     page: str = ""
     delta: float | None = None
     clip: Clip | None = None
+    deep: str = ""
 
 
 def crop_panes(experiment: Experiment, *, other: bool = False) -> list[Pane]:
@@ -53,10 +55,15 @@ def gallery(experiment: Experiment) -> list[Pane]:
     """The textures that were synthesised beside the main one."""
     deltas = _texture_deltas(experiment)
     return [
-        _pane(experiment, output, output.title, delta=deltas.get(output.name))
+        replace(_pane(experiment, output, output.title, delta=deltas.get(output.name)), deep=deep(experiment, output))
         for output in experiment.outputs
         if output.kind == "texture" and output.name != "texture"
     ]
+
+
+def deep(experiment: Experiment, output: Output) -> str:
+    """Where a still texture is downloaded at 16 bits."""
+    return f"{address(experiment, output.name)}?download=true&format=png&depth=16"
 
 
 def steps(experiment: Experiment) -> list[Pane]:
@@ -156,7 +163,8 @@ def _pane(
     experiment: Experiment, output: Output, title: str, *, note: str = "", page: str = "", delta: float | None = None
 ) -> Pane:
     clip = clip_of(experiment, output)
-    return Pane(title, address(experiment, output.name), output.width, output.height, note, page, delta, clip)
+    url = address(experiment, output.name) if output.film else shown(experiment, output.name)
+    return Pane(title, url, output.width, output.height, note, page, delta, clip)
 
 
 def _deltas(experiment: Experiment, part: str) -> list[float]:

@@ -6,6 +6,8 @@ from typing import Any
 
 from app.experiments.model import Experiment
 from app.images.crop import Frames
+from app.methods.effects import without_effect
+from app.methods.model import Size
 from app.methods.registry import METHODS
 
 WIDTH = 76  # characters of a line
@@ -65,6 +67,16 @@ def _said(parameters: dict[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in parameters.items() if value is not None}
 
 
+def _of_texture(experiment: Experiment) -> dict[str, Any]:
+    """The parameters without those that change nothing of the texture, which is all that is asked for."""
+    method, parameters = METHODS[experiment.method], dict(experiment.parameters)
+    sizes = [Size(source.crop.width, source.crop.height, 3, source.frames.count) for source in experiment.inputs]
+    # Not validated: an old experiment's parameters may be none that a later version takes.
+    params = method.params.model_construct(**parameters)
+    idle = without_effect(method, sizes, params, parameters.keys(), ["texture"])
+    return {name: value for name, value in _said(parameters).items() if name not in idle}
+
+
 def _form(value: Any) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
 
@@ -83,14 +95,14 @@ def _curl(experiment: Experiment, base_url: str, files: dict[str, str]) -> str:
         entries |= {f"file{suffix}": f"@{files[sample]}", f"crop{suffix}": source.crop}
         if method.slot(index).moving:
             entries[f"time{suffix}"] = source.frames
-    entries |= _said(dict(experiment.parameters))
+    entries |= _of_texture(experiment)
     words = [_field(name, _form(value)) for name, value in entries.items()]
     address = shlex.quote(f"{base_url}/api/v1/synthesize")
     return _wrapped([f"curl -fsS -o {_texture(experiment)}", address, *words])
 
 
 def _command(experiment: Experiment, files: dict[str, str]) -> str:
-    parameters = _said(dict(experiment.parameters))
+    parameters = _of_texture(experiment)
     size = f"{parameters.pop('width')}x{parameters.pop('height')}"
     names = " ".join(files[address] for address in _addresses(experiment))
     words = [f"microtexture synthesize {names} {_texture(experiment)}", f"--method {experiment.method}"]

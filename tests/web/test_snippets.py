@@ -16,8 +16,9 @@ from typer.testing import CliRunner
 from app.cli.commands import application
 from app.experiments.model import Experiment, ExperimentInput
 from app.images.crop import Frames, Rectangle
+from app.methods.effects import without_effect
 from app.methods.fields import FormField, fields
-from app.methods.model import Method
+from app.methods.model import Method, Size
 from app.methods.registry import METHODS
 from app.web.snippets import snippets
 
@@ -59,6 +60,14 @@ def experiments(method: Method) -> Iterator[Experiment]:
         yield Experiment("id", method.name, inputs, {**usual, **change}, True, "", datetime.now(UTC))
 
 
+def without_texture(experiment: Experiment) -> set[str]:
+    """The parameters that change nothing of the texture."""
+    method = METHODS[experiment.method]
+    sizes = [Size(source.crop.width, source.crop.height, 3, source.frames.count) for source in experiment.inputs]
+    params = method.params.model_construct(**experiment.parameters)
+    return set(without_effect(method, sizes, params, experiment.parameters.keys(), ["texture"]))
+
+
 def texts(experiment: Experiment, base: str = BASE) -> dict[str, str]:
     return dict(snippets(experiment, base))
 
@@ -79,7 +88,8 @@ def test_the_python_snippet_is_python_and_asks_for_the_experiment(method: Method
 
 
 @EVERY
-def test_the_curl_snippet_sends_every_parameter(method: Method) -> None:
+def test_the_curl_snippet_sends_every_parameter_of_the_texture(method: Method) -> None:
+    """What changes nothing of the texture would be refused beside it; by default values nothing is left out."""
     for experiment in experiments(method):
         *_, line = texts(experiment)["curl"].replace("\\\n", "").strip().split("\n")
         words = shlex.split(line)
@@ -87,7 +97,10 @@ def test_the_curl_snippet_sends_every_parameter(method: Method) -> None:
             words[place + 1].split("=", 1) for place, word in enumerate(words) if word in ("-F", "--form-string")
         )
         for name, value in experiment.parameters.items():
-            if value is not None:
+            if name not in sent:
+                assert value is None or name in without_texture(experiment)
+            else:
+                assert name not in without_texture(experiment)
                 assert sent[name] == (str(value).lower() if isinstance(value, bool) else str(value))
         crops = [sent[name] for name in sent if name.startswith("crop")]
         assert crops == [str(source.crop) for source in experiment.inputs]

@@ -66,7 +66,10 @@ async def experiment_output(
     ] = None,
     depth: Annotated[
         Literal["8", "16"] | None,
-        Query(description="Bits per channel, of PNG and TIFF. At 16 bits the texture is computed anew, with its seed."),
+        Query(
+            description="Bits per channel, of PNG and TIFF; default: as it is stored, at the depth of the deepest "
+            "sample. At 16 bits what is stored at 8 is computed anew, with its seed."
+        ),
     ] = None,
     download: Annotated[bool, Query(description="Ask browsers to save it instead of showing it.")] = False,
 ) -> Response:

@@ -6,6 +6,8 @@ from typing import Any, Literal
 from pydantic import BaseModel, Field
 
 from app.experiments.model import Experiment, Output, Sample, Snapshot, Status
+from app.methods.announced import Announced
+from app.methods.effects import COMMON
 from app.methods.model import Method
 from app.web.api.bodies import Crop, TimeRange
 
@@ -128,6 +130,7 @@ class ExperimentRecord(BaseModel):
     method: str
     inputs: list[InputRecord]
     parameters: dict[str, Any] = Field(description="Complete: sizes and defaults are filled in.")
+    depth: int = Field(description="Bits per channel of the pictures, but for those that never have more than 8.")
     listed: bool
     outputs: list[OutputRecord]
     timings: dict[str, float] = Field(description="Seconds by stage.")
@@ -169,6 +172,7 @@ class ExperimentRecord(BaseModel):
                 for source in experiment.inputs
             ],
             parameters=dict(experiment.parameters),
+            depth=experiment.depth,
             listed=experiment.listed,
             outputs=[OutputRecord.of(output, url) for output in experiment.outputs if output.listed],
             timings={stage: round(seconds, 6) for stage, seconds in experiment.timings.items()},
@@ -221,6 +225,28 @@ class ReferenceRecord(BaseModel):
     bibtex: str
 
 
+class AnnouncedRecord(BaseModel):
+    """An output that a method can give."""
+
+    name: str
+    kind: Literal["texture", "view"] = Field(description="A texture that is synthesised, or a view on the way to it.")
+    media_type: str
+    depths: list[int] = Field(description="Bits per channel that it comes at.")
+    parameters: list[str] = Field(description="Those that change it.")
+    condition: str | None = Field(description="Where it is given; null where always.")
+
+    @classmethod
+    def of(cls, output: Announced, method: Method) -> "AnnouncedRecord":
+        return cls(
+            name=output.name,
+            kind=output.kind,
+            media_type=output.media_type,
+            depths=[8, 16] if output.deep else [8],
+            parameters=[name for name in method.params.model_fields if name in COMMON or output.changed_by(name)],
+            condition=output.condition or None,
+        )
+
+
 class MethodRecord(BaseModel):
     """A method."""
 
@@ -230,6 +256,7 @@ class MethodRecord(BaseModel):
     inputs: list[SlotRecord]
     more_inputs: int = Field(description="How many further inputs like the last one it takes.")
     parameters: dict[str, Any] = Field(description="JSON Schema of its parameters.")
+    outputs: list[AnnouncedRecord] = Field(description="All that it can give, in their order.")
     reference: ReferenceRecord = Field(description="The article it comes from.")
     references: list[ReferenceRecord] = Field(description="All of its articles, the main one first.")
 
@@ -243,6 +270,7 @@ class MethodRecord(BaseModel):
             inputs=[SlotRecord(**vars(slot)) for slot in method.inputs],
             more_inputs=method.more,
             parameters=method.params.model_json_schema(),
+            outputs=[AnnouncedRecord.of(output, method) for output in method.outputs],
             reference=references[0],
             references=references,
         )

@@ -1,4 +1,4 @@
-"""``POST /api/v1/synthesize``: photographs or clips in, their texture out, nothing kept."""
+"""``POST /api/v1/synthesize``: photographs or clips in, their texture or another output out, nothing kept."""
 
 import asyncio
 from collections.abc import Callable, Sequence
@@ -12,6 +12,8 @@ from starlette.responses import Response
 from app.errors import InvalidInputError
 from app.experiments.outputs import AnyFormat
 from app.images.crop import Frames, Rectangle
+from app.methods.announced import Announced
+from app.methods.effects import possible_output
 from app.methods.registry import METHODS
 from app.web.api.records import API
 from app.web.deps import ServiceDep
@@ -21,13 +23,14 @@ from app.web.uploads import Form, receive_form
 
 router = APIRouter(prefix=API, tags=["experiments"])
 
+PNG, WEBM = "image/png", "video/webm"
 STILLS: dict[str, AnyFormat] = {
-    "image/png": "png",
+    PNG: "png",
     "image/jpeg": "jpeg",
     "image/webp": "webp",
     "image/tiff": "tiff",
 }
-FILMS: dict[str, AnyFormat] = {"video/webm": "webm", "video/mp4": "mp4"}
+FILMS: dict[str, AnyFormat] = {WEBM: "webm", "video/mp4": "mp4"}
 FORMATS = STILLS | FILMS
 _DEPTHS: dict[str, Literal[8, 16]] = {"8": 8, "16": 16}
 
@@ -84,12 +87,23 @@ _FORM: dict[str, Any] = {
             }
             for number, name in enumerate(TIMES, 1)
         },
+        "output": {
+            "type": "string",
+            "default": "texture",
+            "description": "Name of the output that is the answer; `GET /api/v1/methods` lists those of every method. "
+            "A parameter that changes nothing of it is refused.",
+            "examples": ["texture", "spot"],
+        },
         "format": {
             "type": "string",
             "enum": list(FORMATS.values()),
             "description": "Of the answer; default: what `Accept` prefers, else PNG, and WebM of a video.",
         },
-        "depth": {"type": "string", "enum": list(_DEPTHS), "description": "Bits per channel, of PNG and TIFF."},
+        "depth": {
+            "type": "string",
+            "enum": list(_DEPTHS),
+            "description": "Bits per channel, of PNG and TIFF; default: as the deepest of the photographs.",
+        },
         **form_parameters(),
     },
 }
@@ -97,11 +111,11 @@ _FORM: dict[str, Any] = {
 
 @router.post(
     "/synthesize",
-    summary="A texture straight from photographs",
+    summary="A texture, or another output, straight from photographs",
     response_class=Response,
     responses={
         200: {
-            "description": "The texture.",
+            "description": "The output.",
             "content": {media: {"schema": {"type": "string", "format": "binary"}} for media in FORMATS},
         },
         **problems(409, 422, 503),
@@ -109,7 +123,10 @@ _FORM: dict[str, Any] = {
     openapi_extra={"requestBody": {"required": True, "content": {"multipart/form-data": {"schema": _FORM}}}},
 )
 async def synthesize(request: Request, service: ServiceDep) -> Response:
-    """Every parameter of the method is a field of the form. Nothing of it is kept; hanging up cancels it."""
+    """Every parameter of the method is a field of the form. Nothing of it is kept; hanging up cancels it.
+
+    What would change nothing of the answer is refused, for it may have been meant for another one.
+    """
     async with receive_form(request, FILES) as form:
         wanted = _wanted(request, form)
         running = asyncio.ensure_future(service.synthesize(**wanted))
@@ -125,7 +142,7 @@ async def synthesize(request: Request, service: ServiceDep) -> Response:
             hung_up.cancel()
             running.cancel()
             await asyncio.wait({running, hung_up})
-    name = f"{wanted['method']}-texture{SUFFIXES[media_type]}"
+    name = f"{wanted['method']}-{wanted['output']}{SUFFIXES[media_type]}"
     headers = {"Content-Disposition": f'inline; filename="{name}"', "Cache-Control": "no-store", "Vary": "Accept"}
     return Response(picture, media_type=media_type, headers=headers)
 
@@ -145,6 +162,7 @@ def _wanted(request: Request, form: Form) -> dict[str, Any]:
         )
     crops = _parts(Rectangle.parse, CROPS, fields)
     times = _parts(Frames.parse, TIMES, fields)
+    output = possible_output(METHODS[method], fields.pop("output", "texture"))
     file_format = fields.pop("format", None)
     if file_format is not None and file_format not in FORMATS.values():
         raise InvalidInputError(f"The format is one of: {', '.join(FORMATS.values())}.", "format")
@@ -157,10 +175,17 @@ def _wanted(request: Request, form: Form) -> dict[str, Any]:
         "crops": crops,
         "frames": times,
         "parameters": fields,
-        "file_format": file_format
-        or preferred_format(request.headers.get("accept", ""), moving=METHODS[method].moving),
+        "output": output.name,
+        "file_format": file_format or _usual_format(request, output),
         "depth": None if depth is None else _DEPTHS[depth],
     }
+
+
+def _usual_format(request: Request, output: Announced) -> AnyFormat | None:
+    """What the caller likes best of those that the output comes in; None if it comes in one only."""
+    if output.media_type not in (PNG, WEBM):
+        return None
+    return preferred_format(request.headers.get("accept", ""), moving=output.film)
 
 
 def preferred_format(accept: str, *, moving: bool) -> AnyFormat:
@@ -173,7 +198,7 @@ def preferred_format(accept: str, *, moving: bool) -> AnyFormat:
     >>> [preferred_format(accept, moving=True) for accept in ("video/mp4", "image/webp,*/*")]
     ['mp4', 'webm']
     """
-    formats, usual = (FILMS, FILMS["video/webm"]) if moving else (STILLS, STILLS["image/png"])
+    formats, usual = (FILMS, FILMS[WEBM]) if moving else (STILLS, STILLS[PNG])
     likings: dict[AnyFormat, float] = {}
     for part in accept.lower().split(","):
         media, *options = (piece.strip() for piece in part.split(";"))
