@@ -8,9 +8,10 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from app.errors import InvalidInputError
-from app.methods.model import Context, Picture, Size, StillParams
+from app.methods.model import Context, Fact, Picture, Size, StillParams
 from app.methods.pictures import encode
 from app.synthesis.cell_match import HALF
+from app.synthesis.patch_match import Matches
 
 MOST_WORK = 10**11  # products: a few minutes on two processors
 PRODUCTS_OF_A_PLACE = 16  # that comparing a patch with one of all places takes time for
@@ -33,6 +34,16 @@ def compared_pattern(pattern: NDArray[np.float32], rescale: bool, peak: int, con
 def pattern_size(sizes: Sequence[Size]) -> tuple[int, int]:
     """Width and height of the pattern, which is the second input."""
     return sizes[1].width, sizes[1].height
+
+
+def match_facts(matches: Matches, channels: int, peak: int) -> tuple[Fact, ...]:
+    """How well cells match the pattern, how many they are, and from how many places."""
+    error = np.sqrt(matches.errors.sum() / (matches.sizes.sum() * channels)) * (255 / peak)
+    return (
+        Fact("error", "Difference of the patches from the pattern, root mean square", float(error), "of 255"),
+        Fact("cells", "Cells", len(matches.places)),
+        Fact("sources", "Different places that they were taken from", len(np.unique(matches.places, axis=0))),
+    )
 
 
 def refuse_other_size(pattern: Size, params: StillParams) -> None:

@@ -1,18 +1,112 @@
 """What the methods that lay patches of a crop have in common."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 
 from app.errors import InvalidInputError
 from app.methods.model import Size
-from app.synthesis.cells import Cells
+from app.methods.options import ADVANCED
+from app.synthesis.cell_shapes import reach as near_reach
+from app.synthesis.cells import LEFT_OUT, SLACK, Cells
+from app.synthesis.unbounded_cells import ENDS, Reach, span, table_bytes, terms
 
 Real = NDArray[np.float32]
 
 LEAST_GRID = 4
 BYTES_OF_CELL = 1000  # while cells are laid out
+MOST_TERMS = 15 * 10**9  # of the sum over all cells: a minute or two on two processors
+MOST_OF_A_VIDEO, MOST_OF_A_FRAME = 10**10, 5 * 10**8  # which mixes three pictures, and stops between frames only
+
+
+def reach(default: Reach) -> Any:
+    """The field of the parameter that says how many patches count at a pixel."""
+    return Field(
+        default,
+        title="Patches that count",
+        description="At every pixel 'all' patches count, however far away, as the article's sum says; or those 'near' "
+        "alone: weights are lowered so that they end three grids from a patch's centre, which is quick for any size. "
+        "From a sharpness of 6 on it makes no difference.",
+        json_schema_extra=ADVANCED,
+    )
+
+
+def summed(reach: Reach, sharpness: float) -> bool:
+    """Whether all cells count, and not only those that are near."""
+    return reach == "all" and sharpness < ENDS
+
+
+def refuse_long_sum(height: int, width: int, grid: int, sharpness: float, *, tileable: bool) -> None:
+    """Refuse a plane in which too many cells count at each of too many pixels.
+
+    Raises
+    ------
+    InvalidInputError
+        At ``parameters.reach``.
+    """
+    products = terms(height, width, grid, sharpness, tileable)
+    if products > MOST_TERMS:
+        raise _too_long(products, f"{width} × {height} pixels", height * width)
+
+
+def refuse_long_frames(products: int, height: int, width: int, frames: int) -> None:
+    """Refuse the same of a video, whose frames have so many products each."""
+    if products * frames > MOST_OF_A_VIDEO or products > MOST_OF_A_FRAME:
+        raise _too_long(products, f"{width} × {height} pixels in each of {frames} frames", height * width)
+
+
+def _too_long(products: int, counted: str, pixels: int) -> InvalidInputError:
+    return InvalidInputError(
+        f"About {products // pixels:,} patches count at every one of {counted}, which would take too long: let near "
+        "patches alone count (reach: near), or take a larger grid, a sharpness of 6 or more, or a smaller texture.",
+        "parameters.reach",
+    )
+
+
+@dataclass(frozen=True)
+class Reached:
+    """What joining patches on a plane takes, at most.
+
+    Parameters
+    ----------
+    height, width : int
+        Of the plane.
+    grid : int
+    sharpness : float
+    all_cells : bool
+        See `summed`.
+    tileable : bool
+    """
+
+    height: int
+    width: int
+    grid: int
+    sharpness: float
+    all_cells: bool
+    tileable: bool
+
+    @property
+    def edge(self) -> int:
+        """Pixels beyond the sample's border that patches may show."""
+        unit = self.grid * (1 + SLACK)
+        if not self.all_cells:
+            return near_reach(unit, self.sharpness, LEFT_OUT)
+        return max(max(span(length, unit, self.sharpness, self.tileable)) for length in (self.height, self.width))
+
+    @property
+    def table_bytes(self) -> int:
+        """Bytes of the table of weights."""
+        if not self.all_cells:
+            return 8 * (2 * self.edge + 1) ** 2
+        return table_bytes(self.height, self.width, self.grid * (1 + SLACK), self.sharpness, self.tileable)
+
+    def sample_bytes(self, size: Size, channels: int) -> int:
+        """Bytes of a still sample with what is around it, in single precision."""
+        return 4 * channels * (size.width + 2 * self.edge) * (size.height + 2 * self.edge)
 
 
 def refuse_small(size: Size, grid: int, needs: Callable[[int], tuple[int, int]]) -> None:

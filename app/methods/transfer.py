@@ -1,6 +1,6 @@
 """`transfer`: a pattern rendered in patches of a texture."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from pydantic import Field
@@ -10,26 +10,37 @@ from app.methods.explanation import Exhibit, Explanation, Figure, Formula
 from app.methods.matching import (
     RESCALE,
     compared_pattern,
+    match_facts,
     pattern_size,
     refuse_long_search,
     refuse_other_size,
     search_bytes,
 )
-from app.methods.model import Context, Fact, Method, Picture, Size, Slot, Source, StillParams
+from app.methods.model import Context, Method, Picture, Size, Slot, Source, StillParams
 from app.methods.options import WHOLE_IN_MEMORY
-from app.methods.patches import BYTES_OF_CELL, LEAST_GRID, cell_colours, refuse_small
+from app.methods.patches import (
+    BYTES_OF_CELL,
+    LEAST_GRID,
+    Reached,
+    cell_colours,
+    reach,
+    refuse_long_sum,
+    refuse_small,
+    summed,
+)
 from app.methods.pictures import coordinate_colours, crops, encode, refuse_infinite
 from app.methods.references import PATCHWORK
 from app.methods.several import alike
 from app.synthesis.cells import jittered_cells, least_sample
 from app.synthesis.field import row_blocks
-from app.synthesis.patch_match import Matches
 from app.synthesis.patchwork import painted
 from app.synthesis.team import Team
 from app.synthesis.transfer import rescaled, transfer
+from app.synthesis.unbounded_cells import Reach, joined_cells
 from app.synthesis.work import Work
 
-BYTES_OF_TEXTURE, BYTES_OF_PATTERN = 4, 8  # for each value, beside the search
+BYTES_OF_PATTERN = 8  # for each value, beside the search
+STAGES = {"matching": (0.05, 0.7), "averages": (0.7, 0.78), "texture": (0.78, 0.88)}
 
 
 class TransferParams(StillParams):
@@ -62,6 +73,7 @@ class TransferParams(StillParams):
         "all places.",
     )
     rescale: bool = RESCALE
+    reach: Reach = reach("near")
 
 
 def check(sizes: Sequence[Size], params: TransferParams) -> None:
@@ -74,6 +86,8 @@ def check(sizes: Sequence[Size], params: TransferParams) -> None:
         lambda grid: (least_sample(pattern.height, pattern.width, grid, params.sharpness),) * 2,
     )
     refuse_long_search(texture, pattern, params.grid, params.candidates)
+    if summed(params.reach, params.sharpness):
+        refuse_long_sum(pattern.height, pattern.width, params.grid, params.sharpness, tileable=False)
 
 
 def memory(sizes: Sequence[Size], params: TransferParams) -> int:
@@ -81,8 +95,11 @@ def memory(sizes: Sequence[Size], params: TransferParams) -> int:
     texture, pattern = sizes
     channels = max(texture.channels, pattern.channels)
     cells = (pattern.width // params.grid + 8) * (pattern.height // params.grid + 8)
-    pictures = BYTES_OF_TEXTURE * texture.width * texture.height + BYTES_OF_PATTERN * pattern.width * pattern.height
-    return search_bytes(texture, pattern) + channels * pictures + BYTES_OF_CELL * cells
+    every = summed(params.reach, params.sharpness)
+    joined = Reached(pattern.height, pattern.width, params.grid, params.sharpness, every, tileable=False)
+    rendered = BYTES_OF_PATTERN * channels * pattern.width * pattern.height
+    held = search_bytes(texture, pattern) + joined.sample_bytes(texture, channels) + joined.table_bytes
+    return held + rendered + BYTES_OF_CELL * cells
 
 
 def run(sources: Sequence[Source], params: TransferParams, context: Context) -> Iterator[Picture]:
@@ -103,21 +120,24 @@ def run(sources: Sequence[Source], params: TransferParams, context: Context) -> 
             texture,
             pattern,
             cells,
+            reach=params.reach,
             peak=peak,
             candidates=params.candidates,
             seed=params.seed,
-            work=Work(team, _overall(context)),
+            work=Work(team, lambda stage, part: context.between(*STAGES[stage])(stage, part)),
         )
-        facts = _facts(made.matches, channels, peak)
+        facts = match_facts(made.matches, channels, peak)
         yield encode("texture", "Texture", made.output, peak, context, kind="texture", facts=facts)
         context.progress("cells", 0.9)
         colours = cell_colours(cells, made.matches.places, coordinate_colours(*texture.shape[:2]))
         picture = np.empty((height, width, 3), np.float32)
+        joined = joined_cells(cells, params.reach, tileable=False)
+        work = Work(team, context.between(0.9, 0.95))
 
         def paint(rows: tuple[int, int]) -> None:
-            picture[slice(*rows)] = painted(cells, colours, *rows).transpose(1, 2, 0)
+            picture[slice(*rows)] = painted(joined, colours, *rows, alive=work.alive).transpose(1, 2, 0)
 
-        team.run(paint, row_blocks(height), lambda part: context.progress("cells", 0.9 + 0.05 * part))
+        work.run("cells", paint, row_blocks(height))
     yield encode("cells", "Cells, coloured by the place of their source", picture, 1, context)
     context.progress("views", 0.96)
     yield encode("average", "Averages of the patches", made.average, peak, context)
@@ -126,25 +146,11 @@ def run(sources: Sequence[Source], params: TransferParams, context: Context) -> 
     context.progress("views", 1.0)
 
 
-def _overall(context: Context) -> Callable[[str, float], None]:
-    """The stages of `transfer` one after the other."""
-    stages = {"matching": (0.05, 0.7), "averages": (0.7, 0.78), "texture": (0.78, 0.88)}
-    return lambda stage, part: context.between(*stages[stage])(stage, part)
-
-
-def _facts(matches: Matches, channels: int, peak: int) -> tuple[Fact, ...]:
-    error = np.sqrt(matches.errors.sum() / (matches.sizes.sum() * channels)) * (255 / peak)
-    return (
-        Fact("error", "Difference of the patches from the pattern, root mean square", float(error), "of 255"),
-        Fact("cells", "Cells", len(matches.places)),
-        Fact("sources", "Different places that they were taken from", len(np.unique(matches.places, axis=0))),
-    )
-
-
 LEAVES, SCENE = ("leaves_forest_floor", "0,0,512,512"), ("scene_china", "60,20,400,400")
 ROCK, LICHEN, PLANKS = ((name, "0,0,512,512") for name in ("rock_mountain", "lichen_rock_gray", "planks_wood"))
 SAND, PAVING = ("sand_desert009", "256,256,512,512"), ("crazy_paving001", "40,40,400,400")
 WHOLE_LICHEN, CUT_LICHEN = ("lichen_rock_gray", "0,0,256,256"), ("lichen_rock_gray", "32,32,192,192")
+EXACT = {"candidates": 0, "rescale": False, "seed": 1}
 
 EXPLANATION = Explanation(
     what=(
@@ -176,8 +182,8 @@ EXPLANATION = Explanation(
             r"O(x) = \frac{\sum_i \left( I(x - p_i + q_i) - a_i \right) w_i(x)}{\sqrt{\sum_i w_i(x)^2}} + "
             r"\frac{\sum_i a_i w_i(x)}{\sum_i w_i(x)}",
             r"The result. It differs from patchwork in the averages $a_i$, one for each patch, as there is no longer "
-            r"one for all. The weights $w_i(x)$ are patchwork's; with $f = 2$ they end at three spacings of the grid. "
-            r"What leaves the range is cut off.",
+            r"one for all. The weights $w_i(x)$ are patchwork's: those of near patches, which end three grids from a "
+            r"centre, or of all. What leaves the range is cut off.",
         ),
         Formula(
             r"a_i = \frac{\sum_x s_i(x)\, I(x - p_i + q_i)}{\sum_x s_i(x)}, \qquad "
@@ -192,6 +198,11 @@ EXPLANATION = Explanation(
         ),
     ),
     fails=(
+        "With *all* patches and a low sharpness, as the article has it, many patches count far from where they were "
+        "chosen to be, and draw the result away from the pattern: the pavilion in leaves below differs from it by "
+        "43.6 levels (root mean square) at $f = 2$, and by 38.7 with *near* patches, which are therefore what you get "
+        "if you do not ask. The two results differ by 10.9 of 48 levels at $f = 2$, 4.2 at $f = 3$, 1.1 at $f = 4$ and "
+        "not at all from $f = 6$ on.",
         "A texture that is alike everywhere has no lights and darks to paint with: fine sand or a plain wall shows the "
         "pattern faintly or not at all. What it has is used up soon, and the rest of the pattern's contrast is lost.",
         "Detail that is smaller than the grid is lost as well. A smaller grid shows it, and loses the texture instead: "
@@ -241,6 +252,14 @@ EXPLANATION = Explanation(
             ),
         ),
         Figure(
+            "Near patches and all",
+            "At $f = 2$ patches that were chosen for other places leave their stains on the sky.",
+            tuple(
+                Exhibit("transfer", (LEAVES, SCENE), {"reach": reach, "seed": 1}, ("texture",), reach)
+                for reach in ("near", "all")
+            ),
+        ),
+        Figure(
             "What is put together",
             "The pattern with the colours of the leaves, where its patches come from, their averages, and the result.",
             (Exhibit("transfer", (LEAVES, SCENE), {"seed": 1}, ("pattern", "cells", "average", "texture")),),
@@ -255,14 +274,7 @@ EXPLANATION = Explanation(
             "The pattern is a piece of the texture, and every patch finds its own place there. At the centres the "
             "result is the pattern, pixel for pixel; between them it is too strong, as the patches are the same "
             "image and not independent ones.",
-            (
-                Exhibit(
-                    "transfer",
-                    (WHOLE_LICHEN, CUT_LICHEN),
-                    {"candidates": 0, "rescale": False, "seed": 1},
-                    ("crop-2", "texture"),
-                ),
-            ),
+            (Exhibit("transfer", (WHOLE_LICHEN, CUT_LICHEN), EXACT, ("crop-2", "texture")),),
         ),
     ),
 )

@@ -14,9 +14,9 @@ from app.images.video.cube import VideoCube
 from app.methods.films import film_memory, texture_film
 from app.methods.model import Context, Picture, Size, Source
 from app.methods.options import ADVANCED
+from app.methods.patches import Reached
 from app.methods.pictures import encode
-from app.synthesis.cell_shapes import reach
-from app.synthesis.cells import LEFT_OUT, Window
+from app.synthesis.cells import Window
 from app.synthesis.video_patchwork import in_order
 
 Real = NDArray[np.float32]
@@ -128,17 +128,17 @@ def film_bytes(size: Size) -> int:
     return size.frames * size.channels * size.height * size.width
 
 
-def patchwork_bytes(size: Size, height: int, width: int, grid: int, sharpness: float) -> int:
-    """Bytes that a two-stage synthesis of frames of this size holds, at most.
+def patchwork_bytes(size: Size, joined: Reached) -> int:
+    """Bytes that a two-stage synthesis holds at most, with the clip that has this size.
 
-    The boxes of the cells' weights are at most 2r wide and overlap as often as that is more than a grid; sources may
-    reach r over the border.
+    The boxes of weights that end are at most 2r wide and overlap as often as that is more than a grid; sources may
+    reach r over the border. Weights that do not end are slices of their table.
     """
-    r = reach(grid, sharpness, LEFT_OUT)
+    r, height, width = joined.edge, joined.height, joined.width
     margins = replace(size, width=size.width + 2 * r, height=size.height + 2 * r)
     average = film_bytes(replace(margins, frames=1))
-    weights = 4 * round((2 * r / grid) ** 2 * height * width)
-    held = film_bytes(size) + film_bytes(margins) + 16 * average + weights
+    weights = 0 if joined.all_cells else 4 * round((2 * r / joined.grid) ** 2 * height * width)
+    held = film_bytes(size) + film_bytes(margins) + 16 * average + joined.table_bytes + weights
     return held + frames_bytes(size, height, width)
 
 

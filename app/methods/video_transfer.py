@@ -19,7 +19,7 @@ from app.methods.matching import (
     search_bytes,
 )
 from app.methods.model import Context, LoopParams, Method, Picture, Size, Slot, Source
-from app.methods.patches import LEAST_GRID, refuse_small
+from app.methods.patches import LEAST_GRID, Reached, reach, refuse_long_frames, refuse_small, summed
 from app.methods.pictures import encode, refuse_infinite
 from app.methods.references import PATCHWORK
 from app.methods.video_patches import (
@@ -39,6 +39,7 @@ from app.synthesis.luminance import luminance
 from app.synthesis.team import Team
 from app.synthesis.transfer import rescaled
 from app.synthesis.transitions import Transitions, longest_interval
+from app.synthesis.unbounded_cells import Reach, joined_cells, terms
 from app.synthesis.video_cells import FixedCells
 from app.synthesis.video_patchwork import Clip, VideoPatchwork
 from app.synthesis.work import Work
@@ -68,6 +69,7 @@ class VideoTransferParams(LoopParams):
     )
     rescale: bool = RESCALE
     sharpness: float = sharpness(2)
+    reach: Reach = reach("near")
 
 
 def check(sizes: Sequence[Size], params: VideoTransferParams) -> None:
@@ -78,13 +80,16 @@ def check(sizes: Sequence[Size], params: VideoTransferParams) -> None:
     refuse_small(clip, params.grid, lambda grid: (least_sample(height, width, grid, params.sharpness),) * 2)
     refuse_short(clip, frames, params.interval, longest_interval(clip.frames, frames, params.loop))
     refuse_long_search(clip, pattern, params.grid, params.candidates)
+    if summed(params.reach, params.sharpness):
+        refuse_long_frames(terms(height, width, params.grid, params.sharpness, tileable=False), height, width, frames)
 
 
 def memory(sizes: Sequence[Size], params: VideoTransferParams) -> int:
     """That of the video patchwork, and the search."""
     clip, pattern = sizes
-    held = patchwork_bytes(clip, pattern.height, pattern.width, params.grid, params.sharpness)
-    return held + search_bytes(replace(clip, frames=1), pattern)
+    far = summed(params.reach, params.sharpness)
+    joined = Reached(pattern.height, pattern.width, params.grid, params.sharpness, far, tileable=False)
+    return patchwork_bytes(clip, joined) + search_bytes(replace(clip, frames=1), pattern)
 
 
 def run(sources: Sequence[Source], params: VideoTransferParams, context: Context) -> Iterator[Picture]:
@@ -105,6 +110,7 @@ def run(sources: Sequence[Source], params: VideoTransferParams, context: Context
     transitions = Transitions(
         cells.count, len(film), shape[0], params.interval, loop=params.loop, rng=random(params.seed, IN_TIME)
     )
+    cells = joined_cells(cells, params.reach, tileable=False)
     margin = cells.margin(places, *film.shape[1:3])
     made = VideoPatchwork(Clip(film, margin), cells, places, transitions)
     yield from textured(made.frame, shape, clip, replace(context, progress=context.between(0.2, 0.86)))
@@ -172,7 +178,10 @@ EXPLANATION = Explanation(
             r"O(x, t) = \frac{\sum_i (N_i(x - p_i + q_i, t) - a_i)\, w_i(x)}{\sqrt{\sum_i w_i(x)^2}} + "
             r"\frac{\sum_i a_i w_i(x)}{\sum_i w_i(x)}",
             r"Every frame is a transfer of the sequences' frames $N_i$ (see video patchwork): what differs from the "
-            r"patches' means $a_i$ keeps its deviation, and the means pass over smoothly.",
+            r"patches' means $a_i$ keeps its deviation, and the means pass over smoothly. As in transfer near patches "
+            r"count if you do not ask for all: these take some eight times as long, and at $f = 2$ a frame of the "
+            r"sand under water differs by 3.4 of 21 levels (root mean square), at $f = 3$ by 0.8 and at $f = 4$ by "
+            r"0.2.",
         ),
     ),
     fails=(

@@ -8,9 +8,8 @@ A centre lies on a whole pixel and anywhere in the middle three quarters of its 
 is a slice of one table. The table holds logarithms: only their differences to the largest one at a pixel count, so no
 f over- or underflows, and at a centre the cell alone is left.
 
-With R = 3 the shoulder takes less from the weights than an 8-bit value shows where f ≥ 6. A sum of d^(−f) over the
-plane converges too slowly for smaller f to be cut unseen by any R that keeps the work linear (for f ≤ 1 it does not
-converge even when squared): there the shoulder is part of the model.
+With R = 3 the shoulder takes less from the weights than an 8-bit value shows where f ≥ 6. For smaller f it is a model
+of its own: `app.synthesis.unbounded_cells` has weights without end.
 
 References
 ----------
@@ -20,7 +19,7 @@ P. Harrison, "Patchwork Texture Synthesis", Monash University technical report, 
 from dataclasses import dataclass
 from functools import cached_property
 from math import ceil, inf, log
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.random import SFC64, Generator, SeedSequence
@@ -91,6 +90,7 @@ class Cells:
         Relative to the centre: what holds the Voronoi cell.
     """
 
+    ends: ClassVar[bool] = True  # do the weights?
     height: int
     width: int
     sharpness: float
@@ -234,8 +234,7 @@ def jittered_cells(height: int, width: int, *, grid: int, sharpness: float, tile
     height, width : int
         Of the plane, at least 1.
     grid : int
-        Spacing in pixels, at least 4. It becomes smaller, or at most a tenth larger, so that a whole number of squares
-        fits.
+        Spacing in pixels, at least 4; it becomes smaller, or at most a tenth larger, so that whole squares fit.
     sharpness : float
         f, from 1 to 40.
     tileable : bool

@@ -1,6 +1,6 @@
 """Patchwork: random patches of a sample, joined so that the joins cannot be seen.
 
-    O(x) = Σ_i (I(x − p_i + q_i) − a) w_i(x) / sqrt(Σ_i w_i(x)²) + a
+    O(x) = Σ_i (I(x − p_i + q_i) − a) w_i(x) / sqrt(Σ_i w_i(x)²) + a,   w_i(x) = d(x, p_i)^(−f)
 
 The patches are independent, so where they overlap the variance of the weighted sum is Σ w_i² times the sample's: the
 divisor gives it the sample's again. Feathering divides by Σ w_i instead, and the joins are dull.
@@ -20,11 +20,18 @@ from app.synthesis.cells import Cells, Part, Window, jittered_cells
 from app.synthesis.field import Progress, into, row_blocks
 from app.synthesis.patches import Patches
 from app.synthesis.team import Team
+from app.synthesis.unbounded_cells import Reach, joined_cells
+from app.synthesis.work import Work
 
 BAND, TILE = 192, 1024  # rows and columns that are joined at once: with smaller ones calls take longer than sums
+SMALL_BAND, SMALL_TILE = 64, 512  # where all cells count: what is added to so often stays in the cache
 
 Blend = Literal["deviation", "feather", "sharp"]
 Real = NDArray[np.float32]
+
+
+def _go_on() -> None:
+    """Never stop."""
 
 
 class Patchwork:
@@ -35,9 +42,10 @@ class Patchwork:
     h : ndarray of float32, shape (H, W, C)
         The sample.
     cells : Cells
-        Those of the texture.
+        Those of the texture, with weights that end or that do not.
     blend : {"deviation", "feather", "sharp"}
-        Keep the standard deviation in the joins, feather them, or let each pixel have the cell of the nearest centre.
+        Keep the standard deviation in the joins, feather them, or let each pixel have the cell of the nearest centre:
+        that of cells with weights that end.
     seed : int
         Not negative; draws the sources.
 
@@ -59,15 +67,20 @@ class Patchwork:
         self._mean: Real = h.mean((0, 1), np.float64).astype(np.float32)
         self._patches = Patches(h.transpose(2, 0, 1) - self._mean[:, None, None], cells, self.sources)
 
-    def rows(self, top: int, bottom: int) -> Real:
-        """Rows ``top`` to ``bottom`` − 1 of the texture, shape (C, bottom − top, width), any time and in any order."""
+    def rows(self, top: int, bottom: int, alive: Callable[[], None] = _go_on) -> Real:
+        """Rows ``top`` to ``bottom`` − 1 of the texture, shape (C, bottom − top, width), any time and in any order.
+
+        ``alive`` is called between patches; what it raises stops the work.
+        """
         out = np.zeros((len(self._mean), bottom - top, self.cells.width), np.float32)
-        _join(out, top, self.cells, self._patches.of, self._blend)
+        _join(out, top, self.cells, self._patches.of, self._blend, alive)
         out += self._mean[:, None, None]
         return out
 
 
-def painted(cells: Cells, colours: Real, top: int, bottom: int, *, soft: bool = True) -> Real:
+def painted(
+    cells: Cells, colours: Real, top: int, bottom: int, *, soft: bool = True, alive: Callable[[], None] = _go_on
+) -> Real:
     """Rows of a picture of the cells, as in the report's figure 2.
 
     Parameters
@@ -77,26 +90,38 @@ def painted(cells: Cells, colours: Real, top: int, bottom: int, *, soft: bool = 
     top, bottom : int
     soft : bool
         Mix the colours by the weights, so that the picture shows f.
+    alive : callable
+        See `Patchwork.rows`.
 
     Returns
     -------
     ndarray of float32, shape (C, bottom − top, cells.width)
     """
     out = np.zeros((colours.shape[1], bottom - top, cells.width), np.float32)
-    _join(out, top, cells, lambda part: colours[cells.cell[part.centre], :, None, None], "feather" if soft else "sharp")
+    blend: Blend = "feather" if soft else "sharp"
+    _join(out, top, cells, lambda part: colours[cells.cell[part.centre], :, None, None], blend, alive)
     return out
 
 
-def _join(out: Real, top: int, cells: Cells, show: Callable[[Part], Real], blend: Blend) -> None:
+def band(cells: Cells) -> int:
+    """How many rows are best joined at once."""
+    return BAND if cells.ends else SMALL_BAND
+
+
+def _join(
+    out: Real, top: int, cells: Cells, show: Callable[[Part], Real], blend: Blend, alive: Callable[[], None]
+) -> None:
     """Put together what every part shows, into rows that begin at ``top`` and hold zeros."""
     bottom = top + out.shape[1]
     among = cells.reaching(Window(top, bottom, 0, cells.width))
-    for left in range(0, cells.width, TILE):
-        window = Window(top, bottom, left, min(left + TILE, cells.width))
+    wide = TILE if cells.ends else SMALL_TILE
+    for left in range(0, cells.width, wide):
+        window = Window(top, bottom, left, min(left + wide, cells.width))
         tile = out[:, :, left : window.right]
         norm = np.zeros(tile.shape[1:], np.float32)
         room = np.empty(tile.size, np.float32)
         for part in cells.parts(window, among):
+            alive()
             there, shown = (part.rows, part.columns), show(part)
             if blend == "sharp":
                 np.copyto(tile[:, *there], shown, where=part.weight == 1)
@@ -116,6 +141,7 @@ def patchwork(
     grid: int = 64,
     sharpness: float = 6,
     blend: Blend = "deviation",
+    reach: Reach = "all",
     tileable: bool = True,
     seed: int = 0,
     threads: int = 1,
@@ -134,6 +160,8 @@ def patchwork(
     sharpness : float
         f, 1–40.
     blend : {"deviation", "feather", "sharp"}
+    reach : {"all", "near"}
+        Whether all cells count at a pixel, or the weights end; see `app.synthesis.unbounded_cells`.
     tileable : bool
         On a torus.
     seed : int
@@ -154,13 +182,12 @@ def patchwork(
     (100, 130, 3)
     """
     cells = jittered_cells(height, width, grid=grid, sharpness=sharpness, tileable=tileable, seed=seed)
+    if blend != "sharp":
+        cells = joined_cells(cells, reach, tileable=tileable)
     made = Patchwork(h, cells, blend=blend, seed=seed)
     texture = np.empty((height, width, h.shape[2]), np.float32)
     store = into(texture)
     with Team(threads) as team:
-        team.run(
-            lambda rows: store(rows[0], made.rows(*rows)),
-            row_blocks(height, BAND),
-            lambda part: progress("texture", part) if progress else None,
-        )
+        work = Work(team, progress or (lambda stage, part: None))
+        work.run("texture", lambda rows: store(rows[0], made.rows(*rows, work.alive)), row_blocks(height, band(cells)))
     return texture

@@ -1,10 +1,12 @@
 """The straightforward patchwork of a video: time is one more dimension of space.
 
 Jittered grid points p_i = (t, y, x), one in each block of ``interval`` frames by ``grid`` by ``grid`` pixels, have the
-weights w_i(x) = d(x, p_i)^(−f) − R^(−f), where ``interval`` frames count as ``grid`` pixels and R = 1.75 grids ends
-them, and
+weights w_i(x) = d(x, p_i)^(−f), where ``interval`` frames count as ``grid`` pixels, and
 
     O(x) = Σ (I(x − p_i + q_i) − a) w_i(x) / √(Σ w_i(x)²) + a.
+
+From f = 6 on, and for near points only, the weights are lowered by R^(−f), R = 1.75 grids, which ends them. Otherwise
+every point counts, once: on a circular axis by the short way, and beyond the clip with its mirror image.
 
 As the patches come and go, so does what stood still in the clip.
 
@@ -20,13 +22,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.synthesis.cells import Window
+from app.synthesis.unbounded_cells import ENDS, Reach
 
 Real = NDArray[np.float32]
 Ints = NDArray[np.int64]
 
 REACH = 1.75  # R; every place has a point within √3 grids
 CENTRE = np.float32(1e-3)  # square pixels, added to squared distances: at a centre nothing else counts
-TILE = 512  # pixels a side of what is made at a time: every patch in it holds its distances
+TILE = 512  # pixels a side of what is made at a time
+HELD = 12  # arrays of its size, in single precision
 
 
 def needed(length: int, spacing: int) -> int:
@@ -48,8 +52,15 @@ def needed(length: int, spacing: int) -> int:
 
 
 def held_bytes(height: int, width: int, threads: int = 4) -> int:
-    """Bytes of the distances that so many threads hold, for frames of this size."""
-    return 4 * round((2 * REACH) ** 3) * threads * min(height, TILE) * min(width, TILE)
+    """Bytes of what so many threads hold of a tile, for frames of this size."""
+    return 4 * HELD * threads * min(height, TILE) * min(width, TILE)
+
+
+def products(shape: tuple[int, int, int], grid: int, interval: int) -> int:
+    """How many products of a weight and a pixel a frame has where every point counts."""
+    frames, height, width = shape
+    points = -(-frames // interval) * -(-height // grid) * -(-width // grid)
+    return points * height * width
 
 
 class Mosaic:
@@ -68,6 +79,8 @@ class Mosaic:
     loop, tileable : bool
         Whether distances are circular in time, and in space.
     rng : numpy.random.Generator
+    reach : {"all", "near"}
+        Whether every point counts at a pixel.
 
     Attributes
     ----------
@@ -86,7 +99,9 @@ class Mosaic:
         loop: bool,
         tileable: bool,
         rng: np.random.Generator,
+        reach: Reach = "all",
     ) -> None:
+        self._ends = reach == "near" or sharpness >= ENDS
         self._planes, self._sharpness = planes, sharpness
         self._mean: Real = planes.mean((0, 2, 3), dtype=np.float64).astype(np.float32)
         self._reach2 = np.float32((REACH * grid) ** 2)
@@ -95,7 +110,7 @@ class Mosaic:
         spacings = (interval, grid, grid)
         blocks = np.indices([-(-length // spacing) for length, spacing in zip(shape, spacings, strict=True)])
         self._times, self._rows, self._columns = (
-            _Axis(*of_axis, rng)
+            _Axis(*of_axis, rng, self._ends)
             for of_axis in zip(
                 shape, (frames, height, width), spacings, (loop, tileable, tileable), blocks.reshape(3, -1), strict=True
             )
@@ -118,7 +133,7 @@ class Mosaic:
         for patch, weights in self._weights(number, window):
             squares[patch.place] += weights * weights
             time, rows, columns = patch.source
-            values = self._planes[time, :, rows, columns] - mean
+            values = self._planes[time][:, rows][:, :, columns] - mean
             values *= weights
             total[:, *patch.place] += values
         total /= np.sqrt(squares)
@@ -149,15 +164,16 @@ class Mosaic:
     def _weights(self, number: int, window: Window) -> Iterator[tuple["_Patch", Real]]:
         """The patches of a window, with their weights as a part of the largest at each pixel."""
         nearest = np.full((window.bottom - window.top, window.right - window.left), np.inf, np.float32)
-        patches = list(self._patches(number, window))
-        for patch in patches:
+        for patch in self._patches(number, window):
             place = nearest[patch.place]
             np.minimum(place, patch.distances, out=place)
-        end = self._power(nearest / self._reach2)
-        for patch in patches:
+        end = self._power(nearest / self._reach2) if self._ends else None
+        for patch in self._patches(number, window):
             weights = self._power(nearest[patch.place] / patch.distances)
-            weights -= end[patch.place]
-            yield patch, np.maximum(weights, 0, out=weights)
+            if end is not None:
+                weights -= end[patch.place]
+                np.maximum(weights, 0, out=weights)
+            yield patch, weights
 
     def _power(self, ratios: Real) -> Real:
         """(d² / d'²)^(f/2), in place."""
@@ -171,7 +187,7 @@ class Mosaic:
         for cell in np.flatnonzero(self._times.reaches(offsets)).tolist():
             offset = int(offsets[cell])
             when = CENTRE + np.float32((offset * self._pixels) ** 2)
-            time = int(self._times.q[cell]) + offset
+            time = int(self._times.mirrored(self._times.q[cell] + offset))
             for rows, source_rows, y in self._rows.parts(cell, window.top, window.bottom):
                 for columns, source_columns, x in self._columns.parts(cell, window.left, window.right):
                     yield _Patch(
@@ -185,27 +201,34 @@ class _Patch:
 
     cell: int
     place: tuple[slice, slice]
-    source: tuple[int, slice, slice]
+    source: tuple[int, slice | Ints, slice | Ints]
     distances: Real
 
 
 class _Axis:
     """One coordinate of all points: p in the output, q in the clip.
 
-    ``before`` and ``after`` say how many places on either side are seen, all of which lie in the clip around q.
+    ``before`` and ``after`` say how many places on either side are seen. If the weights end, all of these lie in the
+    clip around q; otherwise those do that would be seen if they did.
     """
 
     def __init__(
-        self, length: int, source: int, spacing: int, wraps: bool, block: Ints, rng: np.random.Generator
+        self, length: int, source: int, spacing: int, wraps: bool, block: Ints, rng: np.random.Generator, ends: bool
     ) -> None:
-        self.length, self._wraps = length, wraps
+        self.length, self._source, self._wraps, self._ends = length, source, wraps, ends
         count = -(-length // spacing)
         self._p = rng.integers(block * length // count, (block + 1) * length // count)
         most_before, most_after = ((length - 1) // 2, length // 2) if wraps else (self._p, length - 1 - self._p)
-        self._before, self._after = (
-            np.minimum(int(REACH * spacing), np.broadcast_to(most, block.shape)) for most in (most_before, most_after)
-        )
-        self.q: Ints = rng.integers(self._before, source - self._after)
+        whole = [np.broadcast_to(most, block.shape) for most in (most_before, most_after)]
+        near = [np.minimum(int(REACH * spacing), most) for most in whole]
+        self.q: Ints = rng.integers(near[0], source - near[1])
+        seen = near if ends else whole
+        self._before, self._after = seen[0], seen[1]
+
+    def mirrored(self, places: Ints) -> Ints:
+        """Places of the clip, those beyond its ends reflected into it."""
+        turn = places % (2 * self._source)
+        return np.minimum(turn, 2 * self._source - 1 - turn)
 
     def offsets(self, place: int) -> Ints:
         """From every point to a place, the short way where the axis is circular."""
@@ -220,11 +243,13 @@ class _Axis:
         seen: NDArray[np.bool_] = (-self._before <= offsets) & (offsets <= self._after)
         return seen
 
-    def parts(self, cell: int, begin: int, end: int) -> Iterator[tuple[slice, slice, Real]]:
+    def parts(self, cell: int, begin: int, end: int) -> Iterator[tuple[slice, slice | Ints, Real]]:
         """Where a cell is seen between two places: relative to the first, in the clip, and how far from its point."""
         p, q, before, after = (int(of_all[cell]) for of_all in (self._p, self.q, self._before, self._after))
         for turn in (-self.length, 0, self.length) if self._wraps else (0,):
             start, stop = max(p - before, begin + turn), min(p + after + 1, end + turn)
             if start < stop:
                 offsets = np.arange(start - p, stop - p, dtype=np.float32)
-                yield slice(start - begin - turn, stop - begin - turn), slice(start - p + q, stop - p + q), offsets
+                source = slice(start - p + q, stop - p + q)
+                shown = source if self._ends else self.mirrored(np.arange(source.start, source.stop))
+                yield slice(start - begin - turn, stop - begin - turn), shown, offsets

@@ -63,7 +63,7 @@ class Clip:
 
 @dataclass(frozen=True)
 class _Patch:
-    """Where a cell, or a part of it, lies in a frame and in the clip, and its normalised weights."""
+    """Where a cell, or a part of it, lies in a frame and in the clip, and its weights, not yet normalised."""
 
     cell: int
     place: tuple[slice, slice]
@@ -92,27 +92,29 @@ class VideoPatchwork:
     ) -> None:
         self._clip, self._transitions = clip, transitions
         self._patches: list[_Patch] = []
-        ratios = np.empty((cells.height, cells.width), np.float32)
+        self._norms = np.empty((cells.height, cells.width), np.float32)
+        ratios = np.empty_like(self._norms)
         for top in range(0, cells.height, STRIP):
             window = Window(top, min(top + STRIP, cells.height), 0, cells.width)
-            self._lay(cells, window, sources + clip.margin, ratios[top : window.bottom])
+            strip = slice(top, window.bottom)
+            self._lay(cells, window, sources + clip.margin, self._norms[strip], ratios[strip])
+        shares = self._norms * ratios
         if means is None:
-            means = self._local_means(cells.count, ratios)
+            means = self._local_means(cells.count, shares)
         self._still: Real = np.zeros((len(clip.average), cells.height, cells.width), np.float32)
         for patch in self._patches:
-            self._still[:, *patch.place] += means[patch.cell][:, None, None] * (
-                (ratios[patch.place] - 1) * patch.weight
-            )
+            self._still[:, *patch.place] += means[patch.cell][:, None, None] * patch.weight
+        self._still *= shares - self._norms
 
-    def _lay(self, cells: Cells, window: Window, sources: Ints, ratios: Real) -> None:
-        """The patches of a window; ``ratios`` gets √(Σ w_i²) / Σ w_i, with which ŵ_i is the part of a pixel."""
+    def _lay(self, cells: Cells, window: Window, sources: Ints, norms: Real, ratios: Real) -> None:
+        """The patches of a window; ``norms`` gets 1 / √(Σ w_i²), ``ratios`` √(Σ w_i²) / Σ w_i."""
         parts = cells.parts(window)
         totals, squares = np.zeros((2, *ratios.shape), np.float32)
         for part in parts:
             totals[part.rows, part.columns] += part.weight
             squares[part.rows, part.columns] += part.weight**2
-        norms = np.sqrt(squares)
-        np.divide(norms, totals, out=ratios)
+        np.divide(1, np.sqrt(squares), out=norms)
+        np.divide(1, norms * totals, out=ratios)
         for part in parts:
             cell = int(cells.cell[part.centre])
             y, x = (sources[cell] + part.source).tolist()
@@ -122,15 +124,15 @@ class VideoPatchwork:
                     cell,
                     (slice(window.top + rows.start, window.top + rows.stop), columns),
                     (slice(rows.start + y, rows.stop + y), slice(columns.start + x, columns.stop + x)),
-                    part.weight / norms[rows, columns],
+                    part.weight,
                 )
             )
 
-    def _local_means(self, count: int, ratios: Real) -> Real:
-        """Every patch's mean in the average image, each pixel counted by the part that the patch has of it."""
+    def _local_means(self, count: int, per_weight: Real) -> Real:
+        """Every patch's mean in the average image, each pixel counted by the share that the patch has of it."""
         sums = np.zeros((count, len(self._clip.average) + 1))
         for patch in self._patches:
-            shares = patch.weight * ratios[patch.place]
+            shares = patch.weight * per_weight[patch.place]
             sums[patch.cell, :-1] += (self._clip.average[:, *patch.source] * shares).sum((1, 2), np.float64)
             sums[patch.cell, -1] += shares.sum(dtype=np.float64)
         means: Real = (sums[:, :-1] / np.maximum(sums[:, -1:], TINY)).astype(np.float32)
@@ -139,7 +141,7 @@ class VideoPatchwork:
     def frame(self, number: int) -> Real:
         """Frame ``number`` of the output, (H, W, C), values about those of the clip and sometimes beyond."""
         mix = self._transitions.at(number)
-        made = self._still.copy()
+        made = np.zeros_like(self._still)
         for patch in self._patches:
             source = slice(None), *patch.source
             alpha, beta = mix.alpha[patch.cell], mix.beta[patch.cell]
@@ -149,6 +151,8 @@ class VideoPatchwork:
                 values += self._clip.average[source] * (1 - alpha - beta)
             values *= patch.weight
             made[:, *patch.place] += values
+        made *= self._norms
+        made += self._still
         return made.transpose(1, 2, 0)
 
 

@@ -78,11 +78,13 @@ def test_its_defaults_suit_a_clip_of_three_seconds(arrangement):
 
 
 @ARRANGED
-def test_the_memory_it_asks_for_covers_what_it_takes(arrangement, tmp_path, monkeypatch):
+@pytest.mark.parametrize("sharpness", [1, 3, 6])
+def test_the_memory_it_asks_for_covers_what_it_takes(arrangement, sharpness, tmp_path, monkeypatch):
     """Without the encoders, whose need is said by `film_memory`. The clip is there before, and is asked for too."""
     monkeypatch.setattr("app.methods.video_patches.texture_film", lambda frames, **shape: iter([list(frames)][1:]))
     source = a_clip(height=150, width=160, frames=24)
     params = {"width": 200, "height": 220, "frames": 4, "grid": 20, "interval": 6, "arrangement": arrangement}
+    params["sharpness"] = sharpness
     asked = VIDEO_PATCHWORK.memory([source.size], VIDEO_PATCHWORK.params(**params)) - film_memory(200, 220, 3)
     tracemalloc.start()
     try:

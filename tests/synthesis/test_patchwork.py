@@ -6,6 +6,7 @@ import pytest
 from app.synthesis.cell_shapes import REACH
 from app.synthesis.cells import jittered_cells
 from app.synthesis.patchwork import Patchwork, painted, patchwork
+from tests.synthesis.full_sums import mirrored
 from tests.synthesis.images import image
 from tests.synthesis.stopping import stops_at
 
@@ -21,12 +22,6 @@ def laid(h, *, sharpness=6.0, tileable=True, seed=0, blend="deviation", height=S
 def whole(made):
     """All of a texture, (H, W, C)."""
     return made.rows(0, made.cells.height).transpose(1, 2, 0)
-
-
-def mirrored(places, size):
-    """Indices beyond an axis of ``size`` pixels, reflected into it."""
-    places = places % (2 * size)
-    return np.where(places < size, places, 2 * size - 1 - places)
 
 
 def full_sum(h, made):
