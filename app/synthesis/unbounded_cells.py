@@ -67,7 +67,7 @@ def span(length: int, unit: float, sharpness: float, tileable: bool) -> tuple[in
     Examples
     --------
     >>> span(96, 16, 2, True), span(95, 16, 2, True), span(40, 16, 2, True), span(96, 16, 4, False)
-    ((48, 47), (47, 47), (32, 32), (64, 64))
+    ((48, 47), (47, 47), (32, 32), (96, 96))
     """
     far = radius(sharpness) * unit
     if not tileable:
