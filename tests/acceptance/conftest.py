@@ -6,7 +6,6 @@ import os
 import socket
 import subprocess
 import sys
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from io import BytesIO
@@ -20,10 +19,11 @@ from axe_playwright_python.sync_playwright import Axe
 from PIL import Image
 from playwright.sync_api import Browser, BrowserContext, Page, Playwright, expect, sync_playwright
 
+from tests.acceptance.waiting import PATIENCE, until
+
 ROOT = Path(__file__).resolve().parents[2]
 SAMPLES = ROOT / "samples"
 SCREENSHOTS = Path(__file__).parent / "screenshots"
-PATIENCE = 60.0
 STANDARDS = {"runOnly": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]}
 
 
@@ -31,18 +31,6 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if Path(__file__).parent in item.path.parents:
             item.add_marker(pytest.mark.acceptance)
-
-
-def until(condition: Callable[[], Any], what: str) -> Any:
-    """Wait for a condition of the outside world; give back what it gave."""
-    deadline = time.monotonic() + PATIENCE
-    pause = 0.02
-    while time.monotonic() < deadline:
-        if found := condition():
-            return found
-        time.sleep(pause)
-        pause = min(2 * pause, 0.2)
-    raise AssertionError(f"waited {PATIENCE:.0f} s for {what}")
 
 
 @dataclass
