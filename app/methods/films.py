@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from app.images.png import encode_png
 from app.images.video.cube import VideoCube
 from app.images.video.encoding import Encoding
-from app.images.video.writers import FilmWriter, Frame, Kind
+from app.images.video.writers import FilmWriter, Frame, Kind, repeated
 from app.methods.model import Context, Picture, Source
 
 
@@ -59,7 +59,8 @@ def texture_film(
     Yields
     ------
     Picture
-        ``texture``, ``texture-mp4``, ``preview``, ``cube``. Left or stopped before, no file and no thread stays.
+        ``texture``, ``texture-mp4``, ``preview``, ``cube``. The MP4 of odd sides is larger, and its title says what is
+        repeated in it. Left or stopped before, no file and no thread stays.
     """
     size = width, height, channels, count
     cube = VideoCube(*size)
@@ -115,9 +116,10 @@ def _written(
             encoding.finish(finishing)
         for file in files:
             writer = writers.pop(0)  # whoever takes the picture owns the file
+            twice = repeated(width, height) if file.kind == "mp4" else ""
             yield Picture(
                 file.name,
-                file.title,
+                f"{file.title}, its {twice} repeated" if twice else file.title,
                 writer.width,
                 writer.height,
                 writer.path,

@@ -11,10 +11,12 @@ from starlette.responses import Response
 
 from app.experiments.catalogue import is_exhibit
 from app.experiments.model import Experiment, Sample, Status
+from app.experiments.outputs import MP4_SUFFIX
 from app.experiments.ownership import new_token
 from app.experiments.service import Service
 from app.experiments.submission import NewExperiment, NewInput
 from app.images.crop import Frames, Rectangle
+from app.images.video.writers import repeated
 from app.methods.fields import fields
 from app.methods.model import Method, MovingParams
 from app.methods.registry import METHODS, method
@@ -67,6 +69,7 @@ def experiment_page(
             "facts": list(facts(experiment)),
             "others": [other for other in METHODS.values() if _shares_phase(other, experiment)],
             "downloads": list(_downloads(experiment)),
+            "padding": _padding(experiment),
             "timings": list(_timings(experiment)),
             "total": f"{sum(experiment.timings.values()):.2f} s",
             "tiling": _tiling([experiment]),
@@ -153,6 +156,19 @@ def _downloads(experiment: Experiment) -> Iterator[tuple[str, str]]:
     yield "WebP", f"{texture}&format=webp"
     yield f"TIFF, {depths[0]} bit", f"{texture}&format=tiff&depth={depths[0]}"
     yield "Everything, ZIP", f"/api/v1/experiments/{experiment.id}/outputs.zip"
+
+
+def _padding(experiment: Experiment) -> str:
+    """Say how the MP4 differs from the texture in size; nothing if it does not."""
+    texture, other = experiment.output("texture"), experiment.output(f"texture{MP4_SUFFIX}")
+    if texture is None or other is None or (texture.width, texture.height) == (other.width, other.height):
+        return ""
+    verb = "are" if texture.width % 2 and texture.height % 2 else "is"
+    return (
+        f"The MP4 has {other.width} × {other.height} pixels: it can have even sides only, and its "
+        f"{repeated(texture.width, texture.height)} {verb} there twice. The WebM has the texture’s own size, and tiles "
+        "without a seam if the texture does."
+    )
 
 
 def _timings(experiment: Experiment) -> Iterator[tuple[str, str, str]]:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from io import BytesIO
 from typing import Any
 
+import av
 import numpy as np
 import pytest
 from PIL import Image
@@ -85,6 +86,29 @@ def test_every_download_is_a_file_of_the_film(site: Any, films: dict[str, Any]) 
     found = re.findall(r'<a class="button" href="(/api/v1/[^"]+)">', page_of(site, f"/experiments/{films['id']}"))
     kinds = [site.client.get(html.unescape(address)).headers["content-type"] for address in found]
     assert kinds == ["video/webm", "video/mp4", "image/webp", "application/zip"]
+
+
+def test_an_mp4_that_is_larger_than_the_texture_is_told_of_beside_its_link(site: Any, films: dict[str, Any]) -> None:
+    """And the record has each file's own size, as a decoder finds it."""
+    assert "there twice" not in page_of(site, f"/experiments/{films['id']}")
+    inputs = [{"sample": films["inputs"][0]["sample"], "crop": CROP, "frames": TIME}]
+    cases = {(31, 27): "last column and last row are", (32, 27): "last row is", (31, 28): "last column is"}
+    for (width, height), words in cases.items():
+        parameters = {"frames": 5, "width": width, "height": height, "seed": 2}
+        odd = site.finished(method="video-rpn", inputs=inputs, parameters=parameters)
+        even = width + width % 2, height + height % 2
+        text = page_of(site, f"/experiments/{odd['id']}")
+        assert f"The MP4 has {even[0]} × {even[1]} pixels" in text
+        assert f"its {words} there twice" in text
+        record = {output["name"]: output for output in odd["outputs"]}
+        assert (record["texture"]["width"], record["texture"]["height"]) == (width, height)
+        assert record["texture"]["title"] == "Texture"
+        for name in ("texture", "texture-mp4"):
+            with av.open(BytesIO(site.client.get(f"{outputs(odd)}/{name}").content)) as file:
+                frame = next(file.decode(video=0))
+            assert (frame.width, frame.height) == (record[name]["width"], record[name]["height"])
+        assert (record["texture-mp4"]["width"], record["texture-mp4"]["height"]) == even
+        assert words.rsplit(" ", 1)[0] in record["texture-mp4"]["title"]
 
 
 def test_the_page_says_where_it_comes_from_and_how_it_continues(site: Any, films: dict[str, Any], clip: str) -> None:

@@ -4,7 +4,9 @@ WebM is exact: VP9 without loss, of red, green and blue as they are (its profile
 colour spaces. A film of one channel becomes the luma, in full range, of a film without colour. Only a film of more than
 `MOST_LOSSLESS` bytes is coded with some loss, with chroma for every pixel. MP4 is for players that know nothing else:
 one chroma value for four pixels, which alone costs a texture of fine colours more than the coding does, and even
-sides: an odd film is continued by its last column or row.
+sides: an odd film is continued by its last column or row, see `repeated`. (With chroma for every pixel H.264 codes odd
+sides too. Browsers play that on Linux, but for 64 × 1 in Firefox; the decoders of phones, of Safari and of Windows do
+not, and they are what the file is for. WebM has any size.)
 
 The same frames give the same bytes: an encoder has as many threads on every machine, and nothing that changes from run
 to run is written beside the pictures.
@@ -46,6 +48,17 @@ def exact_rate(rate: float) -> Fraction:
     24 24000/1001 100/7
     """
     return Fraction(rate).limit_denominator(LARGEST_DENOMINATOR)
+
+
+def repeated(width: int, height: int) -> str:
+    """What the MP4 of a film of this size shows twice; nothing if its sides are even.
+
+    Examples
+    --------
+    >>> repeated(71, 53), repeated(71, 54), repeated(72, 53), repeated(72, 54)
+    ('last column and last row', 'last column', 'last row', '')
+    """
+    return " and ".join(name for name, side in (("last column", width), ("last row", height)) if side % 2)
 
 
 class FilmWriter:

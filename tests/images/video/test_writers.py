@@ -10,7 +10,7 @@ from PIL import Image
 
 from app.images.video import writers
 from app.images.video.reader import first_frame, read_film
-from app.images.video.writers import FilmWriter, write_film
+from app.images.video.writers import FilmWriter, repeated, write_film
 from tests.images.clips import psnr
 from tests.images.video.memory import printed
 from tests.images.video.natural import natural_film
@@ -65,12 +65,33 @@ def test_webm_that_is_too_long_to_be_lossless_is_close(tmp_path, channels, monke
 
 
 @pytest.mark.parametrize("channels", [1, 3])
-def test_an_odd_mp4_continues_its_last_row_and_column(tmp_path, channels):
-    film = natural_film(6, 61, 83, channels)
-    decoded = read(written(tmp_path / "film", film, "mp4"))
-    assert decoded.shape == (6, 62, 84, 3)
-    continued = np.pad(film, ((0, 0), (0, 1), (0, 1), (0, 0)), "edge")
-    assert psnr(decoded, np.broadcast_to(continued, decoded.shape)) >= 38
+@pytest.mark.parametrize(
+    ("height", "width", "twice"),
+    [
+        (61, 83, "last column and last row"),
+        (62, 83, "last column"),
+        (61, 84, "last row"),
+        (62, 84, ""),
+        (1, 64, "last row"),
+        (64, 1, "last column"),
+        (1, 1, "last column and last row"),
+    ],
+)
+def test_an_odd_mp4_repeats_its_last_row_and_column_and_says_so(tmp_path, height, width, twice, channels):
+    """The file's size is what the writer says, and only the sides that are named grow."""
+    film = natural_film(6, height, width, channels)
+    path = tmp_path / "film"
+    writer = FilmWriter(path, "mp4", width=width, height=height, channels=channels, count=6, rate=24.0)
+    for frame in film:
+        writer.write(frame)
+    writer.finish()
+    decoded = read(path)
+    assert decoded.shape == (6, writer.height, writer.width, 3)
+    assert repeated(width, height) == twice
+    below, right = "row" in twice, "column" in twice
+    assert (writer.height, writer.width) == (height + below, width + right)
+    continued = np.pad(film, ((0, 0), (0, below), (0, right), (0, 0)), "edge")
+    assert psnr(decoded, np.broadcast_to(continued, decoded.shape)) >= 36
 
 
 @pytest.mark.parametrize("level", [0, 3, 128, 200, 255])
