@@ -57,7 +57,7 @@ def gallery(experiment: Experiment) -> list[Pane]:
     return [
         replace(_pane(experiment, output, output.title, delta=deltas.get(output.name)), deep=deep(experiment, output))
         for output in experiment.outputs
-        if output.kind == "texture" and output.name != "texture"
+        if output.listed and output.kind == "texture" and output.name != "texture"
     ]
 
 

@@ -24,7 +24,7 @@ OLD = Experiment(
     listed=True,
     owner="",
     created_at=datetime(2026, 1, 1, tzinfo=UTC),
-    outputs=(output("texture"), output("crop"), output("spot"), output(".texture-deep")),
+    outputs=(output("texture"), output("crop"), output("spot"), output(".texture-deep", "texture")),
 )
 
 
