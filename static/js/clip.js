@@ -15,10 +15,12 @@ export class Clip {
       if (next !== null) this.seek(next);
     });
     // Files of MP4 have even sides: the column or row that was added lies outside the frame.
-    video.addEventListener("loadedmetadata", () => {
+    const cover = () => {
       video.style.width = `${(100 * video.videoWidth) / video.width}%`;
       video.style.height = `${(100 * video.videoHeight) / video.height}%`;
-    });
+    };
+    video.addEventListener("loadedmetadata", cover);
+    if (video.readyState >= HTMLMediaElement.HAVE_METADATA) cover(); // it was quicker than this script
     if (video.requestVideoFrameCallback) this.watch();
     else video.addEventListener("timeupdate", () => this.passed(video.currentTime));
   }

@@ -5,6 +5,10 @@ import { Player } from "./player.js";
 import { follow } from "./progress.js";
 import { Viewer } from "./viewer.js";
 
+const PAUSES = [500, 1000, 2000, 4000, 8000]; // milliseconds before the page is asked for again
+const PATIENCE = 15_000; // milliseconds that an answer may take
+const OURS = new Set([200, 404, 410]); // answers that will not be another one soon: the result, or that it was deleted
+
 function setUp() {
   for (const root of document.querySelectorAll(".viewer:not(.waiting)")) {
     if (root.querySelector(".panes")) new Viewer(root);
@@ -15,10 +19,31 @@ function setUp() {
   if (waiting) follow(waiting, replace);
 }
 
-/** Put the page as it is now in the place of the waiting room, without a reload. */
+/** The page as it is now; null where there was no answer, or one of somebody on the way. */
+async function fetched() {
+  try {
+    const answer = await fetch(location.href, { headers: { Accept: "text/html" }, signal: AbortSignal.timeout(PATIENCE) });
+    const page = new DOMParser().parseFromString(await answer.text(), "text/html");
+    return OURS.has(answer.status) && page.querySelector("main#main") ? page : null;
+  } catch {
+    return null;
+  }
+}
+
+/** Put the page as it is now in the place of the waiting room, without a reload as long as there is another way. */
 async function replace() {
-  const answer = await fetch(location.href, { headers: { Accept: "text/html" } });
-  const page = new DOMParser().parseFromString(await answer.text(), "text/html");
+  let page = await fetched();
+  for (const pause of PAUSES) {
+    if (page) break;
+    document.querySelector("[data-loading]").hidden = false;
+    await new Promise((over) => setTimeout(over, pause));
+    page = await fetched();
+  }
+  if (page) show(page);
+  else location.reload();
+}
+
+function show(page) {
   const main = document.querySelector("main");
   const hadFocus = main.contains(document.activeElement) || document.activeElement === document.body;
   main.replaceChildren(...page.querySelector("main").childNodes);

@@ -11,8 +11,9 @@ export class Film {
     this.last = 0;
     video.controls = false;
     video.preload = "auto";
-    // One that came with a page fetched by a script has not begun to load.
-    if (video.networkState === HTMLMediaElement.NETWORK_EMPTY) video.load();
+    // No source yet, or none that can be played? The state does not tell these apart; the events of loading anew will.
+    const { NETWORK_EMPTY, NETWORK_NO_SOURCE } = HTMLMediaElement;
+    if ([NETWORK_EMPTY, NETWORK_NO_SOURCE].includes(video.networkState)) video.load();
   }
 
   /** Frames since the first one, with a fraction. */

@@ -11,7 +11,8 @@ export class Mosaic {
       video.requestVideoFrameCallback(next);
     };
     video.requestVideoFrameCallback(next);
-    video.addEventListener("seeked", () => this.paint()); // a video that is hidden and stands still calls nobody back
+    // A video that is hidden and stands still calls nobody back.
+    for (const name of ["loadeddata", "seeked"]) video.addEventListener(name, () => this.paint());
   }
 
   /** Place n × n films of `wide` × `high` screen pixels, from (left, top) of the box on; `smooth` if they are reduced. */

@@ -50,7 +50,6 @@ export class Player {
     for (const film of this.films) {
       film.video.addEventListener("error", () => this.leave(film));
       film.video.lastElementChild.addEventListener("error", () => this.leave(film));
-      if (film.video.networkState === HTMLMediaElement.NETWORK_NO_SOURCE) this.leave(film);
     }
   }
 

@@ -1,8 +1,15 @@
 // The waiting room of an experiment: server-sent events, or asking every second where those fail.
 
-const ASK_EVERY = 1000; // milliseconds
-const FINISHED = new Set(["succeeded", "failed", "cancelled"]);
+import { start } from "./start.js";
 
+const ASK_EVERY = 1000; // milliseconds
+const SILENCE = 5000; // milliseconds without an event, after which one asks: proxies hold events back
+const ENDS = new Map([["succeeded", "has succeeded"], ["failed", "has failed"], ["cancelled", "was cancelled"]]);
+
+/**
+ * @param {HTMLElement} card
+ * @param {() => Promise<void>} finished loads the result
+ */
 export function follow(card, finished) {
   const address = `/api/v1/experiments/${card.dataset.experiment}`;
   const find = (name) => card.querySelector(`[data-${name}]`);
@@ -13,6 +20,7 @@ export function follow(card, finished) {
   let announced = "";
   let done = false;
   let asking = 0;
+  let heard = opened;
   const source = "EventSource" in window ? new EventSource(`${address}/events`) : null;
 
   function announce(text) {
@@ -23,13 +31,16 @@ export function follow(card, finished) {
 
   function show(state) {
     if (done) return;
-    if (FINISHED.has(state.status)) {
+    if (ENDS.has(state.status)) {
       done = true;
       source?.close();
       clearInterval(asking);
       clearInterval(clock);
-      announce(`The experiment has ${state.status}.`);
-      finished();
+      find("status").textContent = "Finished";
+      find("stage").textContent = "Loading the result …";
+      find("cancel")?.remove();
+      announce(`The experiment ${ENDS.get(state.status)}. Loading the result …`);
+      start(finished);
       return;
     }
     const running = state.status === "running";
@@ -47,6 +58,9 @@ export function follow(card, finished) {
   const clock = setInterval(() => {
     const seconds = (performance.now() - (started ?? opened)) / 1000;
     find("elapsed").textContent = `${Math.floor(seconds)} s`;
+    if (performance.now() - heard < SILENCE) return;
+    heard = performance.now();
+    start(ask);
   }, 250);
 
   async function ask() {
@@ -54,21 +68,23 @@ export function follow(card, finished) {
       const answer = await fetch(address);
       if (answer.status === 404 || answer.status === 410) show({ status: "cancelled" });
       else if (answer.ok) show(await answer.json());
+      else throw new Error(`The answer was ${answer.status}.`);
     } catch {
       announce("The connection broke; trying again.");
     }
   }
 
   function poll() {
-    if (!asking && !done) asking = setInterval(ask, ASK_EVERY);
+    if (!asking && !done) asking = setInterval(() => start(ask), ASK_EVERY);
   }
 
   if (source) {
     for (const name of ["status", "progress", "end", "message"]) {
       source.addEventListener(name, (event) => {
+        show(JSON.parse(event.data));
+        heard = performance.now();
         clearInterval(asking);
         asking = 0;
-        show(JSON.parse(event.data));
       });
     }
     // The browser reconnects by itself; until it has, the answer is asked for, which also notices an end that was missed.

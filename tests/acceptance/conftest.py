@@ -7,6 +7,7 @@ import socket
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
 from io import BytesIO
 from pathlib import Path
@@ -24,6 +25,7 @@ from tests.acceptance.waiting import PATIENCE, until
 ROOT = Path(__file__).resolve().parents[2]
 SAMPLES = ROOT / "samples"
 SCREENSHOTS = Path(__file__).parent / "screenshots"
+WORKERS = 2
 STANDARDS = {"runOnly": ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]}
 
 
@@ -68,7 +70,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
     directory = tmp_path_factory.mktemp("acceptance")
     with socket.create_server(("127.0.0.1", 0)) as reserved:
         port = reserved.getsockname()[1]
-    environment = {**os.environ, "MICROTEXTURE_DATA_DIR": str(directory / "data"), "MICROTEXTURE_WORKERS": "2"}
+    environment = {**os.environ, "MICROTEXTURE_DATA_DIR": str(directory / "data"), "MICROTEXTURE_WORKERS": str(WORKERS)}
     command = [str(Path(sys.executable).parent / "microtexture"), "serve", "--port", str(port)]
     log = (directory / "server.log").open("w")
     process = subprocess.Popen(command, cwd=ROOT, env=environment, stdout=log, stderr=subprocess.STDOUT)
@@ -89,6 +91,26 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
 def experiment(site: Site) -> dict[str, Any]:
     """A finished RPN of rippled sand, half as large again as its crop."""
     return site.run("sand_desert009", (256, 256, 256, 192), width=384, height=288, seed=7)
+
+
+@pytest.fixture(scope="session")
+def busy(site: Site) -> Callable[[], AbstractContextManager[None]]:
+    """A context in which every worker has something to do, so that what is queued meanwhile waits until it ends."""
+    crop = {"x": 0, "y": 0, "width": 96, "height": 96}
+    long = {"inputs": [{"sample": "gravel_gray", "crop": crop}], "parameters": {"width": 800, "height": 800}}
+
+    @contextmanager
+    def busy() -> Iterator[None]:
+        answers = [
+            site.client.post("/api/v1/experiments", json={"method": "efros-leung", **long}) for _ in range(WORKERS)
+        ]
+        try:
+            yield
+        finally:
+            for answer in answers:
+                site.client.delete(f"/api/v1/experiments/{answer.json()['id']}")
+
+    return busy
 
 
 @pytest.fixture(scope="session")
