@@ -2,14 +2,18 @@
 
 import eslint from "@eslint/js";
 import tseslint from "typescript-eslint";
+import promises from "./lint/promises.js";
 
 export default tseslint.config({
   files: ["static/js/**/*.js"],
   extends: [eslint.configs.recommended, tseslint.configs.base],
   languageOptions: { parserOptions: { projectService: true, tsconfigRootDir: import.meta.dirname } },
+  plugins: { promises },
   rules: {
     "no-undef": "off", // tsconfig.json knows the browser's names
     "@typescript-eslint/no-floating-promises": ["error", { ignoreVoid: false }],
     "@typescript-eslint/no-misused-promises": "error",
+    "promises/called": "error",
+    "promises/handed": "error",
   },
 });

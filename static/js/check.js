@@ -1,6 +1,8 @@
 // Says beforehand, at the fields and at the main button, why the service would refuse the form as it is, and what a large run
 // would take. Nothing is hindered: the form can be sent at any time, and is then answered in the same words.
 
+import { start } from "./start.js";
+
 const PAUSE = 300; // milliseconds without a change
 const form = document.querySelector("#experiment");
 const problem = document.querySelector("#run-problem");
@@ -56,7 +58,7 @@ async function ask() {
 
 function later() {
   clearTimeout(timer);
-  timer = setTimeout(ask, PAUSE);
+  timer = setTimeout(() => start(ask), PAUSE);
 }
 
 for (const change of ["input", "change", "crop"]) form.addEventListener(change, later);

@@ -2,6 +2,7 @@
 
 import { ask } from "./answers.js";
 import { Crop } from "./crop.js";
+import { start } from "./start.js";
 import { TimeRange } from "./time_range.js";
 
 const SMALL = 256; // pixels of a thumbnail's longer side, as on the home page
@@ -101,7 +102,9 @@ class Further {
     input.closest(".file").hidden = true;
     button.hidden = false;
     button.addEventListener("click", () => input.click());
-    input.addEventListener("change", () => input.files.length && this.send(input, button));
+    input.addEventListener("change", () => {
+      if (input.files.length) start(() => this.send(input, button));
+    });
   }
 
   async send(input, button) {

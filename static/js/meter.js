@@ -3,6 +3,7 @@
 // not known: no verdict stands beside a crop that it is not about.
 
 import { ask } from "./answers.js";
+import { start } from "./start.js";
 
 const SIDES = ["x", "y", "width", "height"];
 const PATIENCE = 20_000; // milliseconds for one answer
@@ -24,9 +25,7 @@ class Meter {
     this.asking = false;
     this.pause = SOON;
     this.timer = 0;
-    const follow = () => {
-      this.follow().catch(reportError);
-    };
+    const follow = () => start(() => this.follow());
     for (const change of ["crop", "change"]) root.closest("form").addEventListener(change, follow);
     window.addEventListener("online", follow);
     follow();
@@ -72,7 +71,7 @@ class Meter {
   /** Ask the same once more, later or with the next change. */
   again(pause = this.pause) {
     this.asked = "";
-    this.timer = setTimeout(() => this.follow().catch(reportError), pause);
+    this.timer = setTimeout(() => start(() => this.follow()), pause);
     if (pause) this.pause = Math.min(2 * pause, LATE);
   }
 

@@ -1,9 +1,11 @@
 // The waiting room of an experiment: server-sent events, or asking every second where those fail.
 
+import { ask } from "./answers.js";
 import { start } from "./start.js";
 
 const ASK_EVERY = 1000; // milliseconds
 const SILENCE = 5000; // milliseconds without an event, after which one asks: proxies hold events back
+const PATIENCE = 20_000; // milliseconds for one answer
 const ENDS = new Map([["succeeded", "has succeeded"], ["failed", "has failed"], ["cancelled", "was cancelled"]]);
 
 /**
@@ -60,22 +62,24 @@ export function follow(card, finished) {
     find("elapsed").textContent = `${Math.floor(seconds)} s`;
     if (performance.now() - heard < SILENCE) return;
     heard = performance.now();
-    start(ask);
+    start(look);
   }, 250);
 
-  async function ask() {
+  async function look() {
+    let state = { status: "cancelled" }; // and deleted
     try {
-      const answer = await fetch(address);
-      if (answer.status === 404 || answer.status === 410) show({ status: "cancelled" });
-      else if (answer.ok) show(await answer.json());
-      else throw new Error(`The answer was ${answer.status}.`);
-    } catch {
-      announce("The connection broke; trying again.");
+      state = await ask(address, { patience: PATIENCE });
+    } catch ({ status }) {
+      if (status !== 404 && status !== 410) {
+        announce("The connection broke; trying again.");
+        return;
+      }
     }
+    show(state);
   }
 
   function poll() {
-    if (!asking && !done) asking = setInterval(() => start(ask), ASK_EVERY);
+    if (!asking && !done) asking = setInterval(() => start(look), ASK_EVERY);
   }
 
   if (source) {

@@ -23,6 +23,8 @@ export class TimeRange {
     this.fields = { first: root.querySelector("[data-time=first]"), count: root.querySelector("[data-time=count]") };
     this.plays = !REDUCED.matches;
     this.drag = null;
+    /** @type {Clip | undefined} */
+    this.clip = undefined;
     this.build();
     this.listen();
     this.follow();
