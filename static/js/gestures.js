@@ -1,6 +1,7 @@
 // Pan and zoom by mouse, touch and keyboard, on any of several stages.
 
 const STEP = 48; // screen pixels an arrow key pans by
+const NOTCH = 50; // screen pixels: less than this is a trackpad's pinch, which comes as small steps with Ctrl
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
 /** Where a point is on a stage, from the stage's centre. */
@@ -9,15 +10,19 @@ function centred(stage, x, y) {
   return [x - bounds.left - bounds.width / 2, y - bounds.top - bounds.height / 2];
 }
 
-/** `on.pan(dx, dy)` in screen pixels; `on.zoom(factor, x, y)` about a point given from the stage's centre. */
+/**
+ * `on.pan(dx, dy)` in screen pixels; `on.zoom(factor, x, y)` about a point given from the stage's centre. The wheel alone
+ * zooms while `on.focused()`; otherwise it scrolls the page, as it does everywhere.
+ */
 export function listen(stage, on) {
   const down = new Map();
 
   stage.addEventListener("wheel", (event) => {
+    if (!event.ctrlKey && !event.metaKey && !on.focused()) return;
     event.preventDefault();
-    const lines = event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 16 : 1;
-    const speed = event.ctrlKey ? 0.01 : 0.002; // a trackpad's pinch comes as small steps with Ctrl
-    on.zoom(Math.exp(-event.deltaY * lines * speed), ...centred(stage, event.clientX, event.clientY));
+    const moved = event.deltaY * (event.deltaMode === WheelEvent.DOM_DELTA_LINE ? 16 : 1);
+    const speed = event.ctrlKey && Math.abs(moved) < NOTCH ? 0.01 : 0.002;
+    on.zoom(Math.exp(-moved * speed), ...centred(stage, event.clientX, event.clientY));
   }, { passive: false });
 
   stage.addEventListener("pointerdown", (event) => {

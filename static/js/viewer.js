@@ -59,6 +59,7 @@ export class Viewer {
       one: () => this.zoom(1 / this.at.scale, 0, 0),
       fit: () => this.fit(),
       flip: () => this.flip(),
+      focused: () => this.panes.contains(document.activeElement),
     };
     for (const stage of [...this.stages, this.overStage]) listen(stage, on);
     listenToKeys(this.panes, on);

@@ -37,7 +37,9 @@ def test_pictures_are_at_the_same_scale_and_move_together(visitors: Any, experim
     stage = page.locator(".stage").nth(1).bounding_box()
     assert stage is not None
     page.mouse.move(stage["x"] + 300, stage["y"] + 200)
+    page.keyboard.down("Control")
     page.mouse.wheel(0, -800)
+    page.keyboard.up("Control")
     page.wait_for_function("() => parseInt(document.querySelector('.scale').textContent) > 200")
     page.mouse.down()
     page.mouse.move(stage["x"] + 240, stage["y"] + 200, steps=3)

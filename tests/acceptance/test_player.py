@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from PIL import Image
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Route, expect
 
 from app.images.video.reader import read_film
 
@@ -232,6 +232,27 @@ def test_the_tiled_view_repeats_what_plays(
     page.get_by_role("button", name="Play").click()
     page.wait_for_function(f"() => {PLAYING}")
     screenshot(page, "experiment-film-tiled", full_page=False)
+
+
+def test_a_film_that_comes_late_is_repeated_too(
+    visitors: Any, films: dict[str, Any], arrays: dict[str, np.ndarray], shows: Shows
+) -> None:
+    """Though it stands still, and nothing but its coming says that there is something to show."""
+    page = visitors.visit("/", reduced_motion="reduce")
+    held: list[Route] = []
+
+    def hold(route: Route) -> None:
+        held.append(route)
+
+    page.route("**/outputs/texture", hold)
+    page.goto(address(films, "?view=tiled"), wait_until="domcontentloaded")
+    expect(page.locator(".viewer.live")).to_be_visible()
+    page.get_by_role("button", name="1 : 1").click()
+    assert held
+    page.unroute("**/outputs/texture", hold)
+    for route in held:
+        route.fallback()
+    shows(page, ".pane:nth-child(2) .tile", np.tile(arrays["texture"][0], (2, 2, 1)))
 
 
 @pytest.mark.parametrize("view", ["Flip", "Slider"])
