@@ -173,3 +173,23 @@ def test_a_page_swapped_in_is_the_page_loaded_afresh(
     assert not page.evaluate("window.sameDocument")
     assert page.locator("main").inner_text() == words
     assert page.title() == title
+
+
+def test_a_comparison_swapped_in_is_the_one_loaded_afresh(visitors: Any, busy: Waiting, experiment: Any) -> None:
+    page = visitors.visit(f"/experiments/{experiment['id']}")
+    with busy():
+        page.get_by_role("button", name="ADSN at the same phase").click()
+        page.wait_for_url(re.compile("/compare/"))
+        expect(page.locator("[data-experiment]")).to_be_visible()
+        page.evaluate("window.sameDocument = true")
+    expect(page.locator(".viewer.live")).to_be_visible()
+    assert page.evaluate("window.sameDocument")
+    assert_pictures(page)
+    assert_views(page)
+    words, title = page.locator("main").inner_text(), page.title()
+    page.reload()
+    expect(page.locator(".viewer.live")).to_be_visible()
+    assert_pictures(page)
+    assert_views(page)
+    assert page.locator("main").inner_text() == words
+    assert page.title() == title
