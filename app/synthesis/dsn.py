@@ -133,7 +133,7 @@ def dsn(spot: Spot, order: int, *, seed: int = 0, threads: int = 1, progress: Pr
     if progress:
         progress("points", 0.15)
     spectrum = scipy.fft.rfft2(noise, overwrite_x=True, workers=threads)
-    return convolve(spot, spectrum, threads, progress, begin=0.3)
+    return convolve([spot], [spectrum], threads, progress, begin=0.3)
 
 
 def shape(kind: Literal["disc", "gaussian"], height: int, width: int, radius: float) -> Real:

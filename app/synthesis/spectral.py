@@ -49,7 +49,9 @@ def column_blocks(width: int) -> list[tuple[int, int]]:
     return [(first, min(first + COLUMNS, columns)) for first in range(0, columns, COLUMNS)]
 
 
-def random_block(height: int, width: int, block: tuple[int, int], seed: int, rayleigh: bool = False) -> Complex:
+def random_block(
+    height: int, width: int, block: tuple[int, int], seed: int, rayleigh: bool = False, stream: int = 0
+) -> Complex:
     """One block of columns of `random_spectrum`; it depends on no other block, so that any order will do.
 
     Parameters
@@ -62,6 +64,8 @@ def random_block(height: int, width: int, block: tuple[int, int], seed: int, ray
         Not negative.
     rayleigh : bool
         As in `random_spectrum`.
+    stream : int
+        Those of different streams are independent; that of `random_spectrum` is 0.
 
     Returns
     -------
@@ -69,7 +73,7 @@ def random_block(height: int, width: int, block: tuple[int, int], seed: int, ray
     """
     first, last = block
     count = height * (last - first)
-    source = SFC64(SeedSequence(seed, spawn_key=(first,)))
+    source = SFC64(SeedSequence(seed, spawn_key=(first, stream) if stream else (first,)))
     words = source.random_raw(-(-count // 4)).view(np.uint16)[:count].reshape(height, last - first)
     values = np.take(phase_table(), words, mode="clip")
     if rayleigh:

@@ -11,6 +11,8 @@ References
 Galerne, Gousseau, Morel, "Random Phase Textures: Theory and Synthesis", IEEE TIP 2011: section 2.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
@@ -58,15 +60,20 @@ def transform(plane: Real, spot: Spot, threads: int = 1) -> Complex:
 
 
 def convolve(
-    spot: Spot, noise: Complex, threads: int = 1, progress: Progress | None = None, begin: float = 0.0
+    spots: Sequence[Spot],
+    noises: Sequence[Complex],
+    threads: int = 1,
+    progress: Progress | None = None,
+    begin: float = 0.0,
 ) -> Real:
-    """Spot noise of a given white noise.
+    """Spot noise of given white noises: the sum of those of several spots that share their mean.
 
     Parameters
     ----------
-    spot : Spot
-    noise : ndarray of complex64, shape (spot.height, spot.width // 2 + 1)
-        Ŵ on the half spectrum; what it says at the origin is not looked at.
+    spots : sequence of Spot
+        Of one size, and with the same mean: the sum has it once.
+    noises : sequence of ndarray of complex64, shape (height, width // 2 + 1)
+        Ŵ on the half spectrum, one for each spot; what it says at the origin is not looked at.
     threads : int
         For the transforms; the result does not depend on it.
     progress : callable ``(stage, part)``, optional
@@ -78,14 +85,20 @@ def convolve(
     -------
     ndarray of float32, shape (height, width, C)
     """
-    texture = np.empty((len(spot.planes), spot.height, spot.width), np.float32)
-    for channel, (plane, mean) in enumerate(zip(spot.planes, spot.mean, strict=True)):
-        if progress:
-            progress("texture", begin + (1 - begin) * channel / len(texture))
-        spectrum = transform(plane, spot, threads)
-        spectrum *= noise
-        spectrum[0, 0] = 0
-        made = scipy.fft.irfft2(spectrum, s=texture.shape[1:], overwrite_x=True, workers=threads)
+    first = spots[0]
+    texture = np.empty((len(first.planes), first.height, first.width), np.float32)
+    for channel, mean in enumerate(first.mean):
+        total: Complex | None = None
+        for number, (spot, noise) in enumerate(zip(spots, noises, strict=True)):
+            if progress:
+                done = (channel + number / len(spots)) / len(texture)
+                progress("texture", begin + (1 - begin) * done)
+            spectrum = transform(spot.planes[channel], spot, threads)
+            spectrum *= noise
+            total = spectrum if total is None else np.add(total, spectrum, out=total)
+        assert total is not None
+        total[0, 0] = 0
+        made = scipy.fft.irfft2(total, s=texture.shape[1:], overwrite_x=True, workers=threads)
         np.add(made, np.float32(mean), out=texture[channel])
     if progress:
         progress("texture", 1.0)
@@ -97,4 +110,4 @@ def asymptotic(spot: Spot, seed: int, threads: int = 1, progress: Progress | Non
 
     Parameters and result are those of `convolve`; the white noise is that of `random_spectrum`.
     """
-    return convolve(spot, random_spectrum(spot.height, spot.width, seed, rayleigh=True), threads, progress)
+    return convolve([spot], [random_spectrum(spot.height, spot.width, seed, rayleigh=True)], threads, progress)

@@ -9,7 +9,7 @@ sample's; but its energy gathers around its origin, so it can be pasted into a l
 
     t̃ = m + r (t − m) 1_Ω,
 
-with Ω the sample's domain, or a square of K × K pixels around the texton's origin.
+with Ω the sample's domain.
 
 References
 ----------
@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from app.synthesis.field import Progress
 from app.synthesis.luminance import luminance
 from app.synthesis.periodic import periodic_planes
-from app.synthesis.spectral import random_spectrum
+from app.synthesis.spectral import column_blocks, random_block
 from app.synthesis.spot import Spot
 from app.synthesis.spot_noise import Complex, convolve, sample_spot, transform
 
@@ -110,18 +110,12 @@ def radii(t: Real, parts: Sequence[float]) -> list[float]:
     return [float(np.sqrt(np.searchsorted(within, part * within[-1] * (1 - 1e-9)))) for part in parts]
 
 
-def extend_texton(
-    t: Real, mean: NDArray[np.float64], height: int, width: int, cut: int | None = None
-) -> tuple[Spot, NDArray[np.float64]]:
-    """Extended texton t̃ = m + r (t − m) 1_Ω.
+def extend_texton(t: Real, mean: NDArray[np.float64], height: int, width: int) -> Spot:
+    """Extended texton t̃ = m + r (t − m) 1_Ω with r² = M₂N₂ / (M₁N₁).
 
-    Its noise has the variance (1/M₂N₂) Σ (t̃ − mean t̃)², the sum over an image of M₂ × N₂ pixels, and is to have that
-    of the sample, (1/M₁N₁) Σ (t − m)². With u the part of t − m that is kept, that asks for
-
-        r² = (1/M₁N₁) Σ (t − m)² · M₂N₂ / (Σ u² − (Σ u)² / M₂N₂).
-
-    Uncut, Σ u = 0 and r is the square root of the ratio of the areas, the factor of the spot extension; cut, r also
-    makes up for the energy that is lost. It is found for every channel, so that the colours stay.
+    Its noise has the covariance of colours (1/M₂N₂) Σ (t̃ − m)(t̃ − m)ᵀ, the sum over an image of M₂ × N₂ pixels, and
+    that is then the sample's, (1/M₁N₁) Σ (t − m)(t − m)ᵀ. No more can be cut off than that: see
+    `app.synthesis.cut_texton`.
 
     Parameters
     ----------
@@ -131,49 +125,35 @@ def extend_texton(
         The sample's.
     height, width : int
         Size M₂ × N₂ of the output.
-    cut : int, optional
-        K: keep the K × K pixels around the origin only.
 
     Returns
     -------
-    spot : Spot
-    r : ndarray of float64, shape (C,)
-        1 for a channel without contrast.
+    Spot
     """
-    rows, columns = (_around(side, cut) for side in t.shape[:2])
-    kept = t[rows, columns].transpose(2, 0, 1).copy()
-    area = height * width
-    total = np.einsum("yxc,yxc->c", t, t, dtype=np.float64) / (t.shape[0] * t.shape[1])
-    left = np.einsum("cyx,cyx->c", kept, kept, dtype=np.float64)
-    left -= kept.sum(axis=(1, 2), dtype=np.float64) ** 2 / area
-    flat = (total == 0) | (left <= 0)
-    r = np.where(flat, 1.0, np.sqrt(total * area / np.where(flat, 1.0, left)))
-    kept *= r.astype(np.float32)[:, None, None]
-    return Spot(kept, mean, height, width), r
+    r = np.sqrt(height * width / (t.shape[0] * t.shape[1]))
+    return Spot(t.transpose(2, 0, 1) * np.float32(r), mean, height, width)
 
 
-def _around(side: int, cut: int | None) -> slice:
-    """The ``cut`` pixels around pixel ``side // 2`` of a line."""
-    if cut is None or cut >= side:
-        return slice(0, side)
-    first = side // 2 - cut // 2
-    return slice(first, first + cut)
+def texton_noise(
+    h: Real, spots: Sequence[Spot], *, seed: int = 0, threads: int = 1, progress: Progress | None = None
+) -> Real:
+    """ADSN of a sample's texton, its luminance at the phase of the sample's own ADSN.
 
+    At every frequency, with ℓ the luminance of the sample's extended spot, aⱼ that of the texton's spots, R the white
+    noise of `app.synthesis.adsn` at this seed and V white noises of their own, spot j is given
 
-def texton_noise(h: Real, spot: Spot, *, seed: int = 0, threads: int = 1, progress: Progress | None = None) -> Real:
-    """ADSN of a sample's extended texton, at the phase of the sample's own ADSN.
+        Ŵⱼ = vⱼ R + V̂ⱼ − vⱼ Σᵢ v̄ᵢ V̂ᵢ,   vⱼ = (ℓ / |ℓ|) āⱼ / ‖a‖.
 
-    At every frequency the random phase is turned by the difference between the phases, in luminance, of the sample's
-    extended spot and of the extended texton. A uniform random phase turned by a fixed odd one is a uniform random
-    phase, so the law is that of the ADSN of the texton; but from one seed the texture has the phase of
-    `app.synthesis.adsn` and its Rayleigh noise, and for a whole texton of the texture's size it is the same texture.
+    v is fixed and of norm 1, so Ŵ is white and of independent components; and the texture's luminance, Σ aⱼ Ŵⱼ, is
+    ‖a‖ (ℓ / |ℓ|) R: it has the phase of the ADSN, and its Rayleigh noise. Of a whole texton, a single spot, the
+    texture is that ADSN in all channels, where it has the sample's size.
 
     Parameters
     ----------
     h : ndarray of float32, shape (H, W, C)
         The sample.
-    spot : Spot
-        `extend_texton` of the texton of h, or of its centre.
+    spots : sequence of Spot
+        `extend_texton` of the texton of h, alone, or the spots of `app.synthesis.cut_texton.cut_texton`.
     seed : int
         Not negative.
     threads : int
@@ -183,18 +163,42 @@ def texton_noise(h: Real, spot: Spot, *, seed: int = 0, threads: int = 1, progre
 
     Returns
     -------
-    ndarray of float32, shape (spot.height, spot.width, C)
+    ndarray of float32, shape (height, width, C) of the spots
     """
-    if progress:
-        progress("random phase", 0.0)
-    noise = random_spectrum(spot.height, spot.width, seed, rayleigh=True)
-    if progress:
-        progress("random phase", 0.15)
-    own = sample_spot(h, spot.height, spot.width, threads=threads)
-    turn = transform(luminance(own.planes.transpose(1, 2, 0)), own, threads)
-    if progress:
-        progress("random phase", 0.3)
-    turn *= transform(luminance(spot.planes.transpose(1, 2, 0)), spot, threads).conj()
+    say = progress or (lambda stage, part: None)
+    height, width = spots[0].height, spots[0].width
+    say("random phase", 0.0)
+    own = sample_spot(h, height, width, threads=threads)
+    phase = _sign(transform(luminance(own.planes.transpose(1, 2, 0)), own, threads))
     del own
-    noise *= _sign(turn)
-    return convolve(spot, noise, threads, progress, begin=0.45)
+    shares = []
+    for number, spot in enumerate(spots):
+        say("random phase", 0.1 + 0.2 * number / len(spots))
+        shares.append(transform(luminance(spot.planes.transpose(1, 2, 0)), spot, threads).conj())
+    norm = np.sqrt(sum(np.square(share.real) + np.square(share.imag) for share in shares))
+    nowhere = norm == 0
+    norm[nowhere] = 1
+    phase /= norm
+    for share in shares:
+        np.multiply(share, phase, out=share)
+        share[nowhere] = 1 / np.sqrt(len(shares))
+    del norm, phase
+    say("random phase", 0.3)
+    for block in column_blocks(width):
+        _draw(shares, block, width, seed)
+    return convolve(spots, shares, threads, progress, begin=0.45)
+
+
+def _draw(shares: Sequence[Complex], block: tuple[int, int], width: int, seed: int) -> None:
+    """Put the noises Ŵⱼ in the place of the shares vⱼ, in a block of columns."""
+    columns = [share[:, slice(*block)] for share in shares]
+    height = len(columns[0])
+    common = random_block(height, width, block, seed, rayleigh=True)
+    if len(columns) == 1:
+        columns[0] *= common
+        return
+    own = [random_block(height, width, block, seed, rayleigh=True, stream=1 + j) for j in range(len(columns))]
+    for share, noise in zip(columns, own, strict=True):
+        common -= share.conj() * noise
+    for share, noise in zip(columns, own, strict=True):
+        np.add(np.multiply(share, common, out=share), noise, out=share)

@@ -8,7 +8,8 @@ from pydantic import ValidationError
 from app.methods.model import Context, Source
 from app.methods.registry import METHODS
 from app.methods.texton import TEXTON
-from app.synthesis.texton import texton
+from app.synthesis.cut_texton import cut_texton, lag_error
+from app.synthesis.texton import extend_texton, texton
 
 RNG = np.random.default_rng(0)
 PIXELS = (RNG.integers(0, 80, (60, 70, 1)) + RNG.integers(40, 120, (60, 70, 3))).astype(np.float32)
@@ -34,7 +35,8 @@ def test_values_outside_what_is_declared_are_refused(wrong):
 @pytest.mark.parametrize("size", [{}, {"width": 100, "height": 91}, {"width": 40}])
 def test_it_gives_the_texture_the_crop_and_the_texton(size, cut):
     made = run(cut=cut, **size)
-    assert list(made) == ["texture", "crop", "texton", "texton-log", "spot"]
+    noises = ["noises"] if cut else []
+    assert list(made) == ["texture", "crop", "texton", "texton-log", "spot", *noises]
     assert [name for name, picture in made.items() if picture.kind == "texture"] == ["texture"]
     for name in ("texture", "spot"):
         assert (made[name].width, made[name].height) == (size.get("width", 70), size.get("height", 60))
@@ -63,9 +65,43 @@ def test_the_radii_rise_and_the_factor_is_the_root_of_the_areas():
     assert [fact.name for fact in made["texton"].facts] == ["radius-50", "radius-90", "radius-99"]
     values = [fact.value for fact in made["texton"].facts]
     assert 0 <= values[0] < values[1] < values[2] < np.hypot(30, 35)
-    (gain,) = made["spot"].facts
+    gain, *_ = made["spot"].facts
     assert (gain.name, gain.value) == ("gain", pytest.approx(2, rel=1e-5))
     assert run(width=140, height=120, cut=9)["spot"].facts[0].value > 2.05
+
+
+@pytest.mark.parametrize(("size", "cut"), [({}, 9), ({"width": 140, "height": 120}, 9), ({"width": 140}, None)])
+def test_what_is_less_than_the_sample_says_how_far_its_covariance_is_off(size, cut):
+    """In percent of that at one place, and at which distance; the numbers are those of the numerics."""
+    spot = run(cut=cut, **size)["spot"]
+    facts = {fact.name: fact for fact in spot.facts}
+    assert list(facts) == ["gain", "lag-error", "lag"]
+    height, width = size.get("height", 60), size.get("width", 70)
+    mean = PIXELS.mean((0, 1), dtype=np.float64)
+    spots = (
+        cut_texton(PIXELS, mean, height, width, cut).spots if cut else [extend_texton(texton(PIXELS), mean, 60, 140)]
+    )
+    error, lag = lag_error(PIXELS, spots)
+    assert facts["lag-error"].value == pytest.approx(100 * error, rel=1e-3)
+    assert 0 < facts["lag-error"].value < 100
+    assert (facts["lag"].value, facts["lag"].unit) == (pytest.approx(lag), "pixels")
+
+
+@pytest.mark.parametrize("cut", [None, 70, 1000])
+def test_a_whole_texton_of_the_crops_size_has_nothing_to_say_of_it(cut):
+    assert [fact.name for fact in run(cut=cut)["spot"].facts] == ["gain"]
+
+
+@pytest.mark.parametrize(("source", "count"), [(PIXELS, 3), (PIXELS[:, :, :1], 1), (PIXELS[:, :, [0, 0, 0]], 1)])
+def test_every_noise_of_a_cut_has_its_square_and_its_factor(source, count):
+    """Side by side, the first as in the extended texton, each with black or white where it is greatest."""
+    made = run(source=source, cut=9, width=140, height=120)
+    image, extended = pixels(made["noises"]), pixels(made["spot"])
+    assert image.shape[:2] == (9, 9 * count)
+    assert (image[:, :9] == extended[55:64, 65:74]).all()
+    assert all(square.max() == 255 or square.min() == 0 for square in np.split(image, count, axis=1))
+    assert [fact.name for fact in made["noises"].facts] == [f"gain-{n}" for n in range(1, count + 1)]
+    assert made["noises"].facts[0].value == made["spot"].facts[0].value > 2
 
 
 def test_in_the_linear_picture_zero_is_mid_grey_and_one_value_in_a_thousand_is_cut_off():
