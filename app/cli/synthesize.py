@@ -12,6 +12,7 @@ from app.cli.problems import plain_errors
 from app.cli.progress import Bar
 from app.cli.run import Request, run
 from app.cli.settings import read_settings
+from app.methods.effects import listed, made_by
 from app.methods.fields import FormField, fields
 from app.methods.registry import METHODS
 
@@ -134,6 +135,8 @@ def _option(parameter: str, variants: dict[FormField, list[str]]) -> inspect.Par
         _help(field) if len(variants) == 1 else f"For {', '.join(names)}: {_help(field)}"
         for field, names in variants.items()
     )
+    if made := [each for owner in owners for each in made_by(METHODS[owner], parameter)]:
+        help_text += f" Give --output (one of {listed(made)}) or --all with it."
     field = next(iter(variants))
     if field.kind == "switch":
         declared = typer.Option(f"--{name}/--no-{name}", help=help_text, rich_help_panel=heading)

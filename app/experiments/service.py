@@ -249,10 +249,8 @@ class Service:
         crops, frames : sequence of Rectangle or None, and of Frames or None
             Of the files, in their order; for those at the end that are left out, and for None, as in `NewInput`.
         parameters : mapping
-        output : str
-            Name of the output that is the answer.
-        file_format, depth
-            Of the answer.
+        output, file_format, depth
+            The name of the output that is the answer, and what it is written as.
 
         Raises
         ------

@@ -23,6 +23,19 @@ def outputs_of(method: Method, params: StillParams, inputs: int) -> tuple[Announ
     return tuple(output for output in method.outputs if output.given(params, inputs))
 
 
+def made_by(method: Method, parameter: str) -> list[str]:
+    """Names of the outputs that are there for the sake of this parameter: empty if it changes what is always given.
+
+    Examples
+    --------
+    >>> from app.methods.registry import METHODS
+    >>> made_by(METHODS["dsn"], "order"), made_by(METHODS["dsn"], "convergence")[0]
+    ([], 'dsn-10')
+    """
+    changed = [output for output in method.outputs if output.changed_by(parameter)]
+    return [] if any(not output.condition for output in changed) else [output.name for output in changed]
+
+
 def output_named(method: Method, name: str, params: StillParams, inputs: int) -> Announced:
     """The output of this name.
 
@@ -106,17 +119,18 @@ def without_effect(
         said, default = f"{name} (“{field.title}”)", getattr(params, name) == field.default
         changed = [output for output in method.outputs if output.changed_by(name)]
         names = [output.name for output in changed if output in present]
-        makes = all(output.condition for output in changed)  # then a value that makes none asks for nothing
+        makes = bool(made_by(method, name))  # then a value that makes none asks for nothing
         if not default and name in idle:
             found[name] = f"{said} would change nothing here: {idle[name]}"
         elif (names if makes else not default) and not set(names) & set(wanted):
             others = "name one of those as the output, or ask for all, or " if names else ""
             found[name] = (
-                f"{said} changes {_listed(names) or 'nothing'}, and only {_listed(list(wanted))} is asked for: {others}"
+                f"{said} changes {listed(names) or 'nothing'}, and only {listed(list(wanted))} is asked for: {others}"
                 "leave it out."
             )
     return found
 
 
-def _listed(names: Sequence[str]) -> str:
+def listed(names: Sequence[str]) -> str:
+    """Names with commas between them, of many the first and the last."""
     return ", ".join(names if len(names) <= FEW else [*names[: FEW - 2], "…", names[-1]])

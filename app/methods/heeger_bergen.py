@@ -280,15 +280,6 @@ def _iteration(number: int) -> Announced:
     return Announced(name, of=_HISTORY, given=lambda params, inputs: params.iterations > number, condition=words)
 
 
-OUTPUTS = (
-    texture(),
-    *shown_inputs(),
-    *views("noise", of=("edges",)),
-    *map(_iteration, (1, 2, 4, 8, 16)),
-    *views("crop-bands", of=_MATCHED),
-    *views("texture-bands", of=_HISTORY),
-)
-
 HEEGER_BERGEN = Method(
     name="heeger-bergen",
     title="Heeger–Bergen (pyramid histograms)",
@@ -299,6 +290,13 @@ HEEGER_BERGEN = Method(
     explanation=EXPLANATION,
     check=check,
     run=run,
-    outputs=OUTPUTS,
+    outputs=(
+        texture(),
+        *shown_inputs(),
+        *views("noise", of=("edges",)),
+        *map(_iteration, (1, 2, 4, 8, 16)),
+        *views("crop-bands", of=_MATCHED),
+        *views("texture-bands", of=_HISTORY),
+    ),
     toroidal=lambda params: not params.add_smooth,
 )

@@ -252,8 +252,3 @@ class Method:
     def moving(self) -> bool:
         """Whether it makes videos, of which `MovingParams` are the parameters."""
         return any(slot.moving for slot in self.inputs)
-
-    @property
-    def textures(self) -> int:
-        """How many of its first pictures are files of the texture itself: of a video WebM and MP4."""
-        return 2 if self.moving else 1

@@ -1,6 +1,6 @@
 """What the methods that lay patches of a crop have in common."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -38,6 +38,12 @@ def reach(default: Reach) -> Any:
 def summed(reach: Reach, sharpness: float) -> bool:
     """Whether all cells count, and not only those that are near."""
     return reach == "all" and sharpness < ENDS
+
+
+def idle_reach(sizes: Sequence[Size], params: Any) -> dict[str, str]:
+    """Say of the parameter `reach` that it is idle from that sharpness on with which all weights end."""
+    words = f"from a sharpness of {ENDS:g} on only near patches count; take a lower sharpness, or leave it out."
+    return {} if params.sharpness < ENDS else {"reach": words}
 
 
 def refuse_long_sum(height: int, width: int, grid: int, sharpness: float, *, tileable: bool) -> None:

@@ -1,6 +1,6 @@
 """`patchwork`: random patches of the crop, joined invisibly."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Literal
 
 import numpy as np
@@ -17,6 +17,7 @@ from app.methods.patches import (
     LEAST_GRID,
     Reached,
     cell_colours,
+    idle_reach,
     reach,
     refuse_long_sum,
     refuse_small,
@@ -86,6 +87,13 @@ def check(sizes: Sequence[Size], params: PatchworkParams) -> None:
 
 def _all_cells(params: PatchworkParams) -> bool:
     return params.blend != "sharp" and summed(params.reach, params.sharpness)
+
+
+def idle(sizes: Sequence[Size], params: PatchworkParams) -> Mapping[str, str]:
+    """How far weights reach where there are none, or where they end anyway."""
+    if params.blend == "sharp":
+        return {"reach": "a sharp cut knows no weights; take other joins, or leave it out."}
+    return idle_reach(sizes, params)
 
 
 def memory(sizes: Sequence[Size], params: PatchworkParams) -> int:
@@ -294,6 +302,7 @@ PATCHWORK = Method(
     check=check,
     run=run,
     outputs=(texture(), *views("cells", "sources"), *shown_inputs()),
+    idle=idle,
     toroidal=lambda params: params.tileable,
     memory=memory,
 )

@@ -12,7 +12,7 @@ from app.methods.announced import FILMS, SHOWN_CLIP, views
 from app.methods.explanation import Exhibit, Explanation, Figure, Formula
 from app.methods.films import crop_film
 from app.methods.model import Context, Method, Picture, SeamlessParams, Size, Slot, Source
-from app.methods.patches import LEAST_GRID, Reached, reach, refuse_long_frames, refuse_small, summed
+from app.methods.patches import LEAST_GRID, Reached, idle_reach, reach, refuse_long_frames, refuse_small, summed
 from app.methods.references import PATCHWORK
 from app.methods.video_patches import (
     IN_TIME,
@@ -249,6 +249,7 @@ VIDEO_PATCHWORK = Method(
     check=check,
     run=run,
     outputs=(*FILMS, *views("cells", deep=False), *views("average", of=()), *SHOWN_CLIP),
+    idle=idle_reach,
     toroidal=lambda params: params.tileable,
     memory=memory,
 )

@@ -19,7 +19,7 @@ from app.methods.matching import (
     search_bytes,
 )
 from app.methods.model import Context, LoopParams, Method, Picture, Size, Slot, Source
-from app.methods.patches import LEAST_GRID, Reached, reach, refuse_long_frames, refuse_small, summed
+from app.methods.patches import LEAST_GRID, Reached, idle_reach, reach, refuse_long_frames, refuse_small, summed
 from app.methods.pictures import encode, refuse_infinite
 from app.methods.references import PATCHWORK
 from app.methods.video_patches import (
@@ -246,6 +246,7 @@ VIDEO_TRANSFER = Method(
         *SHOWN_CLIP,
         *views("crop-2", of=()),
     ),
+    idle=idle_reach,
     size=pattern_size,
     toroidal=lambda params: False,
     memory=memory,

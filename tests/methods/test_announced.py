@@ -107,24 +107,37 @@ def other_values(method: Method) -> list[tuple[str, Any]]:
     return found
 
 
-CHANGES = [(name, *change) for name, method in METHODS.items() for change in other_values(method)]
+CHANGES = [(name, *change, {}) for name, method in METHODS.items() for change in other_values(method)]
+# With other parameters than the defaults beside them.
+CHANGES += [
+    ("dsn", "radius", 3.0, {"spot": "disc"}),
+    ("dsn", "alpha", 0.3, {"spot": "disc", "radius": 5.0}),
+    ("dsn", "order", 3, {"convergence": True}),
+    ("rpn", "window", "gaussian", {"alpha": 0.0}),
+    ("patchwork", "reach", "near", {"sharpness": 3.0, "grid": 4}),
+    ("patchwork", "reach", "near", {"sharpness": 3.0, "grid": 4, "blend": "sharp"}),
+    ("patchwork", "sharpness", 8.0, {"blend": "sharp"}),
+    ("video-patchwork", "reach", "near", {"sharpness": 3.0, "grid": 4}),
+    ("video-patchwork", "reach", "near", {"sharpness": 3.0, "grid": 4, "arrangement": "mosaic"}),
+    ("video-patchwork", "sharpness", 8.0, {"arrangement": "mosaic"}),
+    ("video-transfer", "reach", "all", {"sharpness": 8.0, "grid": 6}),
+    ("heeger-bergen", "edges", "mirror", {"iterations": 2}),
+]
 
 
-@pytest.mark.parametrize(("name", "parameter", "value"), CHANGES)
+@pytest.mark.parametrize(("name", "parameter", "value", "beside"), CHANGES)
 @pytest.mark.parametrize("larger", [False, True], ids=["of the crop's size", "larger"])
 def test_a_parameter_changes_what_it_is_announced_to_change_and_nothing_else(
-    name: str, parameter: str, value: Any, larger: bool, tmp_path: Path
+    name: str, parameter: str, value: Any, beside: Mapping[str, Any], larger: bool, tmp_path: Path
 ) -> None:
     """And is without effect where it is said to be: what is refused as doing nothing does nothing."""
     method = METHODS[name]
     sources = inputs_of(method, len(method.inputs))
     fixed = name in {"modulus-phase", "rayleigh", "transfer", "video-transfer"} or parameter == "add_smooth"
     size = {} if fixed or not larger else {"width": 70, "height": 61}
-    base: dict[str, Any] = dict(size)
+    base: dict[str, Any] = {**size, **beside}
     if parameter == "range":  # of what leaves the range there must be some
         sources = [Source((3 * (source.pixels - 128) + 128).clip(0, 255), 255) for source in sources]
-    if parameter == "radius":
-        base["spot"] = "disc"
     before = made(method, sources, tmp_path, **base)
     after = made(method, sources, tmp_path, **{**base, parameter: value})
     changed = {
