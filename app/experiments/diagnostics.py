@@ -34,21 +34,25 @@ def diagnose(sources: Sequence[Source], staged: Sequence[tuple[Picture, Path]], 
     -------
     dict
         ``structure``: the structure index δ of every input and of every texture, in the order of the outputs, of a
-        video that of its first frame;
+        video that of its first frame; None where there are too few pixels to tell;
         ``facts``: what the method found out, each with the name of its output.
     """
     textures = [(picture, path) for picture, path in staged if picture.kind == "texture"]
     total = len(sources) + len(textures)
-    inputs: list[float] = []
-    outputs: list[float] = []
+    inputs: list[float | None] = []
+    outputs: list[float | None] = []
     for source in sources:
         progress("structure", 0.92 + 0.06 * len(inputs) / total)
-        inputs.append(round(delta_of(source.pixels), DIGITS))
+        inputs.append(_rounded(delta_of(source.pixels)))
     for picture, path in textures:
         progress("structure", 0.92 + 0.06 * (len(inputs) + len(outputs)) / total)
-        outputs.append(round(delta_of(_pixels(picture, path)), DIGITS))
+        outputs.append(_rounded(delta_of(_pixels(picture, path))))
     facts = [{"output": picture.name, **asdict(fact)} for picture, _ in staged for fact in picture.facts]
     return {"structure": {"inputs": inputs, "outputs": outputs}, "facts": facts}
+
+
+def _rounded(delta: float | None) -> float | None:
+    return None if delta is None else round(delta, DIGITS)
 
 
 def _pixels(picture: Picture, path: Path) -> NDArray[np.float32]:

@@ -11,9 +11,9 @@ from app.images.crop import Rectangle
 from app.images.read import read_crop
 from app.images.strip import place
 from app.synthesis.luminance import Real, luminance
-from app.synthesis.structure import CENTRE, Structure, structure_index
+from app.synthesis.structure import CENTRE, LEAST, Structure, structure_index, too_small
 
-Verdict = Literal["micro-texture", "borderline", "structured"]
+Verdict = Literal["micro-texture", "borderline", "structured", "unknown"]
 
 # In crops of 256² of the bundled photographs (benchmarks/README.md) all micro-textures but one lie below the first, and
 # nothing structured lies below the second; once halved in size, nothing structured lies below the first. Between two
@@ -38,18 +38,29 @@ READINGS: dict[Verdict, Reading] = {
         Reading("micro-texture", "Micro-texture: random phase models will reproduce it."),
         Reading("borderline", "Borderline: random phase models keep its grain, and blur the objects in it."),
         Reading("structured", "Structured: random phase models will dissolve its edges and objects."),
+        Reading("unknown", f"Too small to tell: the index takes {LEAST} pixels along either side."),
     )
 }
 
 
-def reading(delta: float) -> Reading:
-    """What a structure index means.
+@dataclass(frozen=True)
+class Index:
+    """δ and z of a crop; both None if it is too small for them to mean anything."""
+
+    delta: float | None
+    z: float | None
+
+
+def reading(delta: float | None) -> Reading:
+    """What a structure index means, None being that of a crop that is too small.
 
     Examples
     --------
-    >>> [reading(delta).verdict for delta in (0.02, 0.06, 0.2)]
-    ['micro-texture', 'borderline', 'structured']
+    >>> [reading(delta).verdict for delta in (0.02, 0.06, 0.2, None)]
+    ['micro-texture', 'borderline', 'structured', 'unknown']
     """
+    if delta is None:
+        return READINGS["unknown"]
     if delta < MICRO:
         return READINGS["micro-texture"]
     return READINGS["borderline" if delta < STRUCTURED else "structured"]
@@ -68,7 +79,7 @@ class Meter:
         self._measured = lru_cache(KEPT)(self._measure)
         self._photograph = lru_cache(PHOTOGRAPHS)(self._read)
 
-    def structure(self, sample: Sample, crop: Rectangle | None, sigma: float, frame: int = 0) -> Structure:
+    def structure(self, sample: Sample, crop: Rectangle | None, sigma: float, frame: int = 0) -> Index:
         """The structure index of a crop, of all of the sample if None; of a large one, its centre 1024 × 1024 pixels.
 
         Of a video it is that of one frame.
@@ -82,7 +93,8 @@ class Meter:
         whole = Rectangle(0, 0, sample.width, sample.height)
         area = place(measured((crop or whole).within(sample.width, sample.height)), frame, sample.height)
         small = sample.width * sample.height <= SMALL and not sample.transparent and not sample.moving
-        return self._measured(sample.digest, area, sigma, whole if small else None)
+        found = self._measured(sample.digest, area, sigma, whole if small else None)
+        return Index(None, None) if too_small(area.height, area.width) else Index(found.delta, found.z)
 
     def _measure(self, digest: str, area: Rectangle, sigma: float, whole: Rectangle | None) -> Structure:
         if whole is None:

@@ -15,7 +15,7 @@ from app.experiments.direct import Direct
 from app.experiments.following import Following
 from app.experiments.housekeeping import Housekeeping, Pruned
 from app.experiments.intake import SampleIntake
-from app.experiments.meter import Meter
+from app.experiments.meter import Index, Meter
 from app.experiments.model import Experiment, Output, Page, Sample, Snapshot
 from app.experiments.outputs import AnyFormat, Outputs
 from app.experiments.ownership import same, token_digest
@@ -25,7 +25,7 @@ from app.experiments.run import DEEP, deep_job
 from app.experiments.submission import NewExperiment
 from app.images.crop import Frames, Rectangle
 from app.settings import Settings
-from app.synthesis.structure import SIGMA, Structure
+from app.synthesis.structure import SIGMA
 
 CACHE_BYTES = 1 << 30
 
@@ -131,9 +131,7 @@ class Service:
         """A video sample as a file that plays, and its media type. Raises `NotFoundError`, also for a still picture."""
         return self._pictures.film(self._store.sample(sample_id), file_format)
 
-    def structure(
-        self, sample_id: str, crop: Rectangle | None = None, sigma: float = SIGMA, frame: int = 0
-    ) -> Structure:
+    def structure(self, sample_id: str, crop: Rectangle | None = None, sigma: float = SIGMA, frame: int = 0) -> Index:
         """How structured a crop is, see `Meter.structure`. Raises `NotFoundError` or `InvalidInputError`."""
         return self._meter.structure(self._store.sample(sample_id), crop, sigma, frame)
 

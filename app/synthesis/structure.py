@@ -34,6 +34,7 @@ Complex = NDArray[np.complex64]
 Real = NDArray[np.float32]
 
 SIGMA = 2.0  # pixels; the scale at which δ tells best, see benchmarks/README.md
+LEAST = 32  # pixels of a side; at 32 δ tells three times out of four, see benchmarks/README.md, and below of nothing
 CENTRE = 1024  # pixels of a side that are measured: more of a texture tells nothing new, and costs
 CACHED = 1 << 15  # values worked on at a time
 FLAT = 1e-6  # of the crop's contrast: differences that are smaller on average are those of rounding
@@ -78,7 +79,7 @@ def structure_index(h: Real, sigma: float = SIGMA) -> Structure:
     -------
     Structure
         All 0 if the crop is constant, or has no contrast left at this scale: a constant is its own random phase
-        texture.
+        texture. The numbers are those of the formulas at any size; whether they mean anything, `too_small` says.
 
     Examples
     --------
@@ -98,14 +99,32 @@ def structure_index(h: Real, sigma: float = SIGMA) -> Structure:
     return Structure(lacking / found.mean, lacking / deviation, found.mean, found.total, deviation)
 
 
-def delta_of(h: Real, sigma: float = SIGMA) -> float:
+def too_small(height: int, width: int) -> bool:
+    """Whether a crop is too small for its δ to mean anything: one that has less than 32 pixels along a side.
+
+    Examples
+    --------
+    >>> too_small(1, 1), too_small(31, 500), too_small(32, 32)
+    (True, True, False)
+    """
+    return min(height, width) < LEAST
+
+
+def delta_of(h: Real, sigma: float = SIGMA) -> float | None:
     """δ_σ alone of a crop, or of the centre 1024 × 1024 pixels of one that is larger; a third of the work.
 
     Parameters
     ----------
     h, sigma
         As of `structure_index`. An axis of at most 1024 pixels is measured whole.
+
+    Returns
+    -------
+    float or None
+        None for a crop that is `too_small`.
     """
+    if too_small(h.shape[0], h.shape[1]):
+        return None
     found = _Variation(centre(h, CENTRE, CENTRE), sigma)
     return 0.0 if found.flat else (found.mean - found.total) / found.mean
 

@@ -19,8 +19,8 @@ CUBES = ("crop-cube", "cube")
 class Pane:
     """One picture or film.
 
-    ``page`` is where its title leads, ``delta`` its structure index where that is known, ``clip`` how a film plays,
-    ``deep`` where it is at 16 bits.
+    ``page`` is where its title leads, ``measured`` whether its structure index was asked for, ``delta`` what that is,
+    None being too small to tell, ``clip`` how a film plays, ``deep`` where it is at 16 bits.
     """
 
     title: str
@@ -29,6 +29,7 @@ class Pane:
     height: int
     note: str = ""
     page: str = ""
+    measured: bool = False
     delta: float | None = None
     clip: Clip | None = None
     deep: str = ""
@@ -39,7 +40,7 @@ def crop_panes(experiment: Experiment, *, other: bool = False) -> list[Pane]:
     deltas = _deltas(experiment, "inputs")
     titles = input_titles(experiment, other=other)
     return [
-        _pane(experiment, _output(experiment, name), title, delta=deltas[index] if index < len(deltas) else None)
+        _pane(experiment, _output(experiment, name), title, deltas=deltas[index : index + 1])
         for index, (name, title) in enumerate(zip(_crop_names(experiment), titles, strict=True))
     ]
 
@@ -47,15 +48,17 @@ def crop_panes(experiment: Experiment, *, other: bool = False) -> list[Pane]:
 def texture_pane(experiment: Experiment, note: str = "", page: str = "") -> Pane:
     """The texture itself."""
     output = _output(experiment, "texture")
-    delta = _texture_deltas(experiment).get("texture")
-    return _pane(experiment, output, label(experiment.method), note=note, page=page, delta=delta)
+    deltas = _texture_deltas(experiment).get("texture", [])
+    return _pane(experiment, output, label(experiment.method), note=note, page=page, deltas=deltas)
 
 
 def gallery(experiment: Experiment) -> list[Pane]:
     """The textures that were synthesised beside the main one."""
     deltas = _texture_deltas(experiment)
     return [
-        replace(_pane(experiment, output, output.title, delta=deltas.get(output.name)), deep=deep(experiment, output))
+        replace(
+            _pane(experiment, output, output.title, deltas=deltas.get(output.name, [])), deep=deep(experiment, output)
+        )
         for output in experiment.outputs
         if output.listed and output.kind == "texture" and output.name != "texture"
     ]
@@ -160,18 +163,25 @@ def _output(experiment: Experiment, name: str) -> Output:
 
 
 def _pane(
-    experiment: Experiment, output: Output, title: str, *, note: str = "", page: str = "", delta: float | None = None
+    experiment: Experiment,
+    output: Output,
+    title: str,
+    *,
+    note: str = "",
+    page: str = "",
+    deltas: Sequence[float | None] = (),
 ) -> Pane:
+    """Show an output; ``deltas`` is its structure index, or empty where it was not measured."""
     clip = clip_of(experiment, output)
     url = address(experiment, output.name) if output.film else shown(experiment, output.name)
-    return Pane(title, url, output.width, output.height, note, page, delta, clip)
+    return Pane(title, url, output.width, output.height, note, page, bool(deltas), next(iter(deltas), None), clip)
 
 
-def _deltas(experiment: Experiment, part: str) -> list[float]:
+def _deltas(experiment: Experiment, part: str) -> list[float | None]:
     """The structure indices; experiments of the first version have none."""
     return list(experiment.diagnostics.get("structure", {}).get(part, []))
 
 
-def _texture_deltas(experiment: Experiment) -> dict[str, float]:
+def _texture_deltas(experiment: Experiment) -> dict[str, list[float | None]]:
     names = [output.name for output in experiment.outputs if output.kind == "texture"]
-    return dict(zip(names, _deltas(experiment, "outputs"), strict=False))
+    return {name: [delta] for name, delta in zip(names, _deltas(experiment, "outputs"), strict=False)}

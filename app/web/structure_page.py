@@ -8,7 +8,7 @@ from fastapi import APIRouter, Request
 from starlette.responses import Response
 
 from app.errors import InvalidInputError
-from app.experiments.meter import MICRO, STRUCTURED, Reading, reading
+from app.experiments.meter import MICRO, STRUCTURED, Index, Reading, reading
 from app.experiments.model import Sample
 from app.experiments.service import Service
 from app.images.crop import Rectangle
@@ -17,7 +17,6 @@ from app.methods.references import RANDOM_PHASE_TEXTURES, SHARPNESS
 from app.numbers import whole
 from app.samples import bundled
 from app.settings import Settings
-from app.synthesis.structure import Structure
 from app.web.deps import ServiceDep, SettingsDep
 from app.web.inputs import crop_names, time_names
 from app.web.templating import METER_END, meter_place, render
@@ -101,7 +100,7 @@ class Placed:
     top: float
 
 
-def form_structure(service: Service, sample: Sample, values: Mapping[str, str]) -> Structure | None:
+def form_structure(service: Service, sample: Sample, values: Mapping[str, str]) -> Index | None:
     """Measure the crop that a form's fields name, for pages without a script; None if it cannot be measured."""
     with suppress(InvalidInputError, ValueError):
         crop = Rectangle.parse(",".join(values.get(name, "") for name in crop_names(1)))
@@ -136,9 +135,10 @@ def _photographs(service: Service, settings: Settings) -> list[Measured]:
     """Those that have come in so far; a scene is no texture, a clip no photograph: neither has a place on the scale."""
     entries = {entry.id: entry for entry in bundled(settings.samples_dir) if entry.kind not in ("scene", "moving")}
     return [
-        Measured(sample, entry.title, entry.crop, service.structure(sample.id, entry.crop).delta)
+        Measured(sample, entry.title, entry.crop, delta)
         for sample in service.bundled_samples()
         if (entry := entries.get(sample.id)) is not None
+        and (delta := service.structure(sample.id, entry.crop).delta) is not None
     ]
 
 

@@ -20,7 +20,7 @@ class Meter {
     this.sentence = root.querySelector(".structure-words");
     this.asked = "";
     // What is not known yet has its room already, so that nothing moves under the pointer when it comes.
-    root.classList.toggle("unknown", root.hidden);
+    if (root.hidden) root.classList.add("unknown");
     root.hidden = false;
     this.asking = false;
     this.pause = SOON;
@@ -87,6 +87,7 @@ class Meter {
   }
 
   show({ delta, verdict, words }) {
+    if (delta === null) return this.forget(words);
     const shown = Math.max(0, delta);
     const place = Math.min(1, Math.sqrt(shown / Number(this.bar.dataset.end)));
     this.bar.querySelector(".meter-value").setAttribute("width", 100 * place);

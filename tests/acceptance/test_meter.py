@@ -97,3 +97,14 @@ def test_without_a_script_the_page_and_its_links_work(visitors: Any) -> None:
     page.locator(".photographs a", has_text="Soil").click()
     expect(page).to_have_url(re.compile(r"/samples/soil_ground010\?crop=416,352,512,512$"))
     expect(page.locator(METER)).to_contain_text("Structured")
+
+
+def test_a_crop_of_a_few_pixels_is_too_small_to_tell_and_a_larger_one_is_told_again(visitors: Any) -> None:
+    page = visitors.visit("/samples/rockface_pink?crop=190,60,256,256")
+    words, shown = page.locator(f"{METER} .structure-words"), page.locator(f"{METER} .meter-number")
+    expect(words).to_contain_text("Micro-texture")
+    for width, sentence in (("31", "Too small to tell"), ("32", "Micro-texture"), ("3", "Too small to tell")):
+        page.locator("#crop-width").fill(width)
+        page.locator("#crop-width").press("Tab")
+        expect(words).to_contain_text(sentence)
+        expect(shown).to_be_visible(visible=sentence == "Micro-texture")

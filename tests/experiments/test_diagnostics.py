@@ -50,6 +50,14 @@ def test_inputs_and_textures_are_measured_and_views_are_not(tmp_path: Path) -> N
     assert abs(found["outputs"][0]) < 0.1 < found["outputs"][1]
 
 
+@pytest.mark.parametrize(("size", "known"), [((1, 1), False), ((3, 1), False), ((31, 32), False), ((32, 32), True)])
+def test_of_a_few_pixels_there_is_no_index(tmp_path: Path, size: tuple[int, int], known: bool) -> None:
+    noise = np.random.default_rng(1).integers(0, 256, (*size, 3), dtype=np.uint8)
+    pictures = [staged(tmp_path, noise, kind="texture")]
+    found = diagnose([Source(noise.astype(np.float32), 255)], pictures, silent)["structure"]
+    assert [delta is not None for delta in (*found["inputs"], *found["outputs"])] == [known, known]
+
+
 def test_of_a_large_texture_the_same_centre_is_measured_as_of_an_array(tmp_path: Path) -> None:
     noise = np.random.default_rng(2).integers(0, 256, (1101, 1300, 1), dtype=np.uint8)
     (found,) = diagnose([], [staged(tmp_path, noise, kind="texture")], silent)["structure"]["outputs"]

@@ -7,7 +7,7 @@ import pytest
 
 from app.errors import InvalidInputError
 from app.experiments import meter
-from app.experiments.meter import Meter
+from app.experiments.meter import Index, Meter, reading
 from app.experiments.model import Sample
 from app.images.crop import Rectangle
 from app.images.png import encode_png
@@ -50,14 +50,29 @@ def noise(height, width, channels=3):
 
 
 @pytest.mark.parametrize("small", [0, 1 << 20])
-@pytest.mark.parametrize("area", [None, Rectangle(30, 10, 64, 50), Rectangle(0, 40, 1, 1)])
+@pytest.mark.parametrize("area", [None, Rectangle(30, 10, 64, 50), Rectangle(0, 40, 32, 32)])
 def test_a_crop_has_the_index_of_its_pixels_however_it_is_read(files, monkeypatch, small, area):
     monkeypatch.setattr(meter, "SMALL", small)
     pixels = noise(80, 100)
     found = Meter(files).structure(kept(files, pixels), area, 1.5)
     area = area or Rectangle(0, 0, 100, 80)
-    cut = pixels[area.y : area.y + area.height, area.x : area.x + area.width]
-    assert found == structure_index(cut.astype(np.float32), 1.5)
+    cut = structure_index(pixels[area.y : area.y + area.height, area.x : area.x + area.width].astype(np.float32), 1.5)
+    assert found == Index(cut.delta, cut.z)
+
+
+@pytest.mark.parametrize("size", [(1, 1), (3, 1), (31, 32), (32, 31), (100, 31)])
+@pytest.mark.parametrize("sigma", [0, 2])
+def test_a_crop_of_less_than_32_pixels_along_a_side_is_too_small_to_tell(files, size, sigma):
+    found = Meter(files).structure(kept(files, noise(80, 100)), Rectangle(0, 40, *size), sigma)
+    assert found == Index(None, None)
+    assert reading(found.delta).verdict == "unknown"
+    assert "Too small to tell" in reading(found.delta).words
+
+
+def test_a_crop_of_32_pixels_is_large_enough(files):
+    """Also where a side is longer, and where that of the photograph is no longer."""
+    for pixels, crop in ((noise(80, 100), Rectangle(3, 4, 32, 32)), (noise(32, 2000), None)):
+        assert Meter(files).structure(kept(files, pixels), crop, 2).delta is not None
 
 
 def test_dragging_over_a_small_photograph_decodes_it_once_and_asking_again_costs_nothing(files):
@@ -68,7 +83,7 @@ def test_dragging_over_a_small_photograph_decodes_it_once_and_asking_again_costs
 
 
 def test_of_a_large_crop_only_its_middle_is_read(files):
-    pixels = noise(16, CENTRE + 200)
+    pixels = noise(40, CENTRE + 200)
     found = Meter(files).structure(kept(files, pixels), None, 2)
     assert found.delta == pytest.approx(structure_index(pixels[:, 100:-100].astype(np.float32)).delta)
 
@@ -80,9 +95,10 @@ def test_a_crop_is_refused_that_reaches_outside_even_if_its_middle_does_not(file
 
 
 def test_transparent_pixels_are_refused_only_where_the_crop_holds_them(files):
-    pixels = noise(20, 40, 4)
-    pixels[:, :20, 3], pixels[:, 20:, 3] = 255, 0
+    pixels = noise(40, 80, 4)
+    pixels[:, :40, 3], pixels[:, 40:, 3] = 255, 0
     sample, measuring = kept(files, pixels), Meter(files)
-    assert measuring.structure(sample, Rectangle(0, 0, 20, 20), 2).mean > 0
-    with pytest.raises(InvalidInputError, match="transparent"):
-        measuring.structure(sample, Rectangle(10, 0, 20, 20), 2)
+    assert measuring.structure(sample, Rectangle(0, 0, 40, 40), 2).delta is not None
+    for crop in (Rectangle(10, 0, 40, 40), Rectangle(39, 0, 2, 2)):
+        with pytest.raises(InvalidInputError, match="transparent"):
+            measuring.structure(sample, crop, 2)

@@ -53,9 +53,9 @@ def fact(about: str, title: str, value: float = 1.0, unit: str = "") -> dict[str
 
 def test_an_experiment_of_the_first_version_has_its_pictures_and_no_numbers() -> None:
     """Its outputs have no kind and nothing was measured."""
-    assert [(pane.title, pane.delta) for pane in [*crop_panes(OLD), texture_pane(OLD)]] == [
-        ("Sample", None),
-        ("RPN", None),
+    assert [(pane.title, pane.measured) for pane in [*crop_panes(OLD), texture_pane(OLD)]] == [
+        ("Sample", False),
+        ("RPN", False),
     ]
     assert gallery(OLD) == []
     assert [pane.title for pane in steps(OLD)] == ["Texture", "Crop", "Spot"]
@@ -70,6 +70,14 @@ def test_each_texture_has_its_own_index() -> None:
     assert texture_pane(made).delta == 0.01
     assert [(pane.title, pane.delta) for pane in gallery(made)] == [("N-10", 0.02), ("N-100", 0.03)]
     assert [pane.delta for pane in crop_panes(made)] == [0.3]
+    assert all(pane.measured for pane in [*crop_panes(made), *gallery(made)])
+
+
+def test_what_was_too_small_to_tell_was_measured_all_the_same() -> None:
+    outputs = (output("texture", "texture"), output("crop"), output("n-10", "texture"))
+    made = replace(OLD, outputs=outputs, diagnostics={"structure": {"inputs": [None], "outputs": [None, 0.2]}})
+    assert [(pane.measured, pane.delta) for pane in [*crop_panes(made), texture_pane(made)]] == [(True, None)] * 2
+    assert [(pane.measured, pane.delta) for pane in gallery(made)] == [(True, 0.2)]
 
 
 def test_facts_name_their_picture_only_where_they_would_be_mistaken() -> None:

@@ -5,9 +5,8 @@ import itertools
 import numpy as np
 import pytest
 
-from app.experiments.meter import reading
+from app.experiments.meter import Index, reading
 from app.images.crop import Rectangle
-from app.synthesis.structure import Structure
 from app.web.structure_page import SIDE, Measured, placed
 from app.web.templating import TEMPLATES, meter_place
 
@@ -29,6 +28,15 @@ def test_it_answers_with_the_index_its_words_and_what_was_measured(site):
         "words": "Micro-texture: random phase models will reproduce it.",
         "crop": {"x": 8, "y": 8, "width": 32, "height": 40},
     }
+
+
+@pytest.mark.parametrize("crop", ["5,5,1,1", "0,0,3,1", "8,8,31,32", "8,8,32,31"])
+def test_of_a_few_pixels_it_says_that_there_is_no_telling(site, crop):
+    answer = get(site, crop=crop).json()
+    assert (answer["verdict"], answer["delta"], answer["z"]) == ("unknown", None, None)
+    assert answer["words"] == "Too small to tell: the index takes 32 pixels along either side."
+    assert ",".join(str(answer["crop"][side]) for side in ("x", "y", "width", "height")) == crop
+    assert get(site, crop="8,8,32,32").json()["verdict"] != "unknown"
 
 
 def test_without_a_crop_all_of_the_sample_is_measured(site):
@@ -92,7 +100,22 @@ def test_a_picture_s_meter_is_a_bar_a_number_and_a_word(delta, word, width):
     assert f"{max(delta, 0):.2f}</span> {word}" in said
 
 
-@pytest.mark.parametrize("structure", [None, Structure(0.1, 1.0, 1.0, 0.9, 0.1)])
+def test_a_picture_of_a_few_pixels_has_words_and_no_number():
+    said = TEMPLATES.env.get_template("_partials/meter.html").module.meter(None)
+    assert "too small to tell" in said
+    assert "<svg" not in said
+    assert "meter-number" not in said
+
+
+def test_a_crop_of_a_few_pixels_has_words_without_a_script_too(site):
+    part = TEMPLATES.env.get_template("_partials/meter.html")
+    said = part.render(sample=site.service.sample("gravel_gray"), structure=Index(None, None))
+    assert 'class="structure unknown"' in said
+    assert "Too small to tell" in said
+    assert " hidden" not in said.split(">")[0]
+
+
+@pytest.mark.parametrize("structure", [None, Index(0.1, 1.0)])
 def test_the_crop_s_meter_shows_what_the_page_knows_and_hides_until_it_knows(site, structure):
     part = TEMPLATES.env.get_template("_partials/meter.html")
     said = part.render(sample=site.service.sample("gravel_gray"), structure=structure)

@@ -98,8 +98,8 @@ class OutputRecord(BaseModel):
 class StructureRecord(BaseModel):
     """The structure index δ: the share of total variation that a picture lacks against its random phase textures."""
 
-    inputs: list[float] = Field(description="Of the crops.")
-    outputs: list[float] = Field(description="Of the textures, in the order of the outputs.")
+    inputs: list[float | None] = Field(description="Of the crops; null for one of less than 32 pixels along a side.")
+    outputs: list[float | None] = Field(description="Of the textures, in the order of the outputs; null likewise.")
 
 
 class FactRecord(BaseModel):

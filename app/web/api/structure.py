@@ -24,16 +24,17 @@ router = APIRouter(prefix=f"{API}/samples", tags=["samples"])
 class StructureIndex(BaseModel):
     """How structured a crop is."""
 
-    delta: float = Field(
+    delta: float | None = Field(
         description="The structure index δ: the share of total variation that the crop lacks against its own random "
-        "phase textures, at the scale σ. About 0 for a micro-texture, 0.1 to 0.4 for bricks, tiles and leaves."
+        "phase textures, at the scale σ. About 0 for a micro-texture, 0.1 to 0.4 for bricks, tiles and leaves. Null "
+        "where the crop has less than 32 pixels along a side: of so few it means nothing."
     )
-    z: float = Field(
+    z: float | None = Field(
         description="The same difference in standard deviations of the total variation of those textures. It grows "
-        "with the crop and with sharpness; δ tells better what a texture is."
+        "with the crop and with sharpness; δ tells better what a texture is. Null with it."
     )
     sigma: float = Field(description="Deviation, in pixels, of the Gaussian that smoothed the crop first.")
-    verdict: Verdict = Field(description="What δ says, in one word.")
+    verdict: Verdict = Field(description="What δ says, in one word; unknown where it is null.")
     words: str = Field(description="… and in a sentence.")
     crop: Crop = Field(description="What was asked about. Of a side beyond 1024 pixels the middle 1024 are measured.")
 
@@ -62,8 +63,8 @@ async def read_structure(
     found = await in_upload_thread(request, service.structure, sample_id, area, sigma, frame)
     said = reading(found.delta)
     return StructureIndex(
-        delta=round(found.delta, 4),
-        z=round(found.z, 2),
+        delta=None if found.delta is None else round(found.delta, 4),
+        z=None if found.z is None else round(found.z, 2),
         sigma=sigma,
         verdict=said.verdict,
         words=said.words,
