@@ -2,9 +2,12 @@
 
 import json
 import re
+import unicodedata
 
 FAR = 1_000_000  # pixels or frames: beyond any sample and any texture, and small enough for every database
 _WHOLE = re.compile(r"\s*[+-]?[0-9]{1,9}\s*")
+_WHOLE_WRITTEN = re.compile(r"([+-]?)([0-9]+)(?:[.,](?!000$)0+)?")  # three noughts after a sign may be thousands
+_WRITTEN = re.compile(r"([+-]?)([0-9]*)(?:[.,]([0-9]*))?(e[+-]?[0-9]+)?", re.IGNORECASE)
 _SAID = 60  # characters of a value that a message says back
 
 
@@ -25,6 +28,31 @@ def whole(text: str) -> int:
     if not _WHOLE.fullmatch(text):
         raise ValueError(f"not a whole number of at most nine digits: {said(text)}")
     return int(text)
+
+
+def plain(text: str, *, whole: bool) -> str:
+    """Write a number that a person typed as programs do: a decimal comma becomes a point.
+
+    The pages' scripts read numbers in the same way (``static/js/numbers.js``).
+
+    Raises
+    ------
+    ValueError
+        If it is no number, or no whole one where that is asked for, or could be more than one: with marks for
+        thousands (``1.234,5``, ``1,2,3``), or ``1,000`` for a whole number.
+
+    Examples
+    --------
+    >>> plain("0,25", whole=False), plain(" 007 ", whole=True), plain("7,0", whole=True)
+    ('0.25', '7', '7')
+    """
+    written = unicodedata.normalize("NFKC", text).replace("\N{MINUS SIGN}", "-").strip()
+    found = (_WHOLE_WRITTEN if whole else _WRITTEN).fullmatch(written)
+    sign, digits, *parts = found.groups(default="") if found else ("", "")
+    rest, power = parts or ("", "")
+    if not digits and not rest:
+        raise ValueError(f"not a{' whole' if whole else ''} number: {said(text)}")
+    return ("-" if sign == "-" else "") + (digits.lstrip("0") or "0") + (f".{rest}" if rest else "") + power.lower()
 
 
 def said(value: object) -> str:

@@ -1,5 +1,6 @@
 """What a method's parameters look like from outside: forms, command-line options and pages are made of these fields."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -45,6 +46,15 @@ def _bound(schema: Mapping[str, Any], *names: str) -> str:
     return next((_text(schema[name]) for name in names if name in schema), "")
 
 
+def _step(kind: Kind, default: Any) -> str:
+    """By how much an arrow key changes a number: the last digit of a default written with two."""
+    if kind == "integer":
+        return "1"
+    if kind != "number":
+        return ""
+    return f"{10.0 ** (math.floor(math.log10(abs(default))) - 1):g}" if default else "0.1"
+
+
 @cache
 def fields(params: type[BaseModel]) -> tuple[FormField, ...]:
     """Every parameter of a Params class as a form field, in the order of its declaration.
@@ -72,7 +82,7 @@ def fields(params: type[BaseModel]) -> tuple[FormField, ...]:
                 default=_text(declared.get("default")),
                 minimum=_bound(inner, "minimum", "exclusiveMinimum"),
                 maximum=_bound(inner, "maximum", "exclusiveMaximum"),
-                step="1" if kind == "integer" else "any" if kind == "number" else "",
+                step=_step(kind, declared.get("default")),
                 choices=tuple(str(choice) for choice in inner.get("enum", ())),
                 advanced=bool(declared.get("advanced", False)),
             )

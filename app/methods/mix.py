@@ -1,6 +1,7 @@
 """`mix`: barycentres of Gaussian textures."""
 
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
@@ -16,6 +17,7 @@ from app.methods.options import WHOLE_IN_MEMORY, SpotParams, not_extended
 from app.methods.pictures import crops, refuse_infinite
 from app.methods.references import GAUSSIAN_MIXING, PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
 from app.methods.several import alike
+from app.numbers import plain
 from app.synthesis.field import Noise
 from app.synthesis.levels import Levels
 from app.synthesis.mixing import Mixture
@@ -23,7 +25,25 @@ from app.synthesis.team import Team
 
 MOST_STEPS, FURTHER = 16, 2  # of the path; samples beside the first two
 PANEL = 512  # pixels of each side that a step of the path shows in the strip
-NO_NUMBERS = "must be numbers from 0 on with commas between them, such as 0.3,0.7, and not all of them 0"
+NO_NUMBERS = (
+    "must be numbers from 0 on, and not all of them 0, with commas between them, such as 0.3,0.7, "
+    "or with semicolons where the commas are decimal, such as 0,3; 0,7"
+)
+
+
+def _parts(text: str) -> list[str]:
+    """Split a list at its semicolons, or at its spaces if no comma stands beside one, or at its commas.
+
+    Commas of both kinds, ``0,5, 0,5``, could be four numbers or two.
+    """
+    if ";" in text:
+        return text.split(";")
+    if not re.search(r"\s,|,\s", text.strip()):
+        apart = text.split()
+        return apart if len(apart) > 1 else text.split(",")
+    if "." not in text and re.search(r"\S,\S", text):
+        raise ValueError(text)
+    return text.split(",")
 
 
 class MixParams(SpotParams):
@@ -34,7 +54,8 @@ class MixParams(SpotParams):
         max_length=100,
         title="Weights",
         description="How much of each sample: numbers with commas between them, one for each sample in their order, "
-        "such as 0.3,0.7. Only their proportions count. Empty: as much of each.",
+        "such as 0.3,0.7; or with semicolons or spaces, where the commas are decimal: 0,3; 0,7. Only their proportions "
+        "count. Empty: as much of each.",
     )
     strip: int = Field(
         8,
@@ -49,13 +70,16 @@ class MixParams(SpotParams):
     @field_validator("weights")
     @classmethod
     def _are_weights(cls, text: str) -> str:
+        if not text.strip():
+            return ""
         try:
-            found = [float(number) for number in text.split(",")] if text.strip() else [1.0]
+            written = [plain(part, whole=False) for part in _parts(text)]
         except ValueError:
             raise ValueError(NO_NUMBERS) from None
+        found = [float(number) for number in written]
         if not all(0 <= weight < math.inf for weight in found) or not 0 < sum(found) < math.inf:
             raise ValueError(NO_NUMBERS)
-        return text
+        return ",".join(written)
 
     def shares(self, count: int) -> list[float]:
         """The weights of ``count`` samples, of sum 1."""

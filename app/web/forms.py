@@ -8,6 +8,7 @@ from pydantic import ValidationError
 
 from app.methods.fields import FormField, fields, requirement
 from app.methods.model import LoopParams, Method, MovingParams, SeamlessParams, StillParams
+from app.numbers import plain, said
 
 SHARED = tuple(StillParams.model_fields)  # width, height and seed: asked once for all methods
 FAMILIES = (
@@ -64,16 +65,28 @@ def parse(method: Method, submitted: Mapping[str, str]) -> Parsed:
     """
     declared = fields(method.params)
     given: dict[str, Any] = {}
+    wrong: dict[str, str] = {}
     for entry in declared:
         text = submitted.get(form_name(method, entry.name), "").strip()
         if entry.kind == "switch":
             given[entry.name] = bool(text)
         elif text:
-            given[entry.name] = text
+            try:
+                given[entry.name] = _written(entry, text)
+            except ValueError:
+                wrong[entry.name] = requirement(entry)
+    parameters: dict[str, Any] = {}
     try:
-        return Parsed(parameters=method.params.model_validate(given).model_dump(mode="json", exclude_unset=True))
+        parameters = method.params.model_validate(given).model_dump(mode="json", exclude_unset=True)
     except ValidationError as error:
+        entries = {entry.name: entry for entry in declared}
         problems = {str(problem["loc"][0]): problem["msg"] for problem in error.errors() if problem["loc"]}
-        return Parsed(
-            errors={form_name(method, e.name): requirement(e, problems[e.name]) for e in declared if e.name in problems}
-        )
+        wrong |= {name: requirement(entries[name], problem) for name, problem in problems.items() if name in entries}
+    names = {entry.name: form_name(method, entry.name) for entry in declared if entry.name in wrong}
+    errors = {at: f"{wrong[name].removesuffix('.')}; got {said(submitted[at].strip())}." for name, at in names.items()}
+    return Parsed(errors=errors) if errors else Parsed(parameters)
+
+
+def _written(entry: FormField, text: str) -> str:
+    """Read a number as people write them, and leave other texts as they are."""
+    return plain(text, whole=entry.kind == "integer") if entry.kind in {"integer", "number"} else text

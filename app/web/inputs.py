@@ -10,16 +10,16 @@ from app.experiments.submission import NewInput
 from app.images.crop import Frames, Rectangle
 from app.methods.model import Method, Slot
 from app.methods.registry import METHODS
-from app.numbers import whole
+from app.numbers import plain, said, whole
 from app.samples import BundledSample
 
 START = 512  # pixels of a side of the first crop, at most
 SIDES = ("x", "y", "width", "height")
 ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
-FOUR_NUMBERS = "A crop is four whole numbers: x, y, width and height in pixels."
+FOUR_NUMBERS = "A crop is four whole numbers: x, y, width and height in pixels"
 OR_NONE = " Left empty, all four of them, it is a region that suits."
-TWO_NUMBERS = "A time range is two whole numbers: the first frame, counted from 0, and how many. Left empty: all."
-ONE_NUMBER = "The frame is a whole number: the first one has the number 0."
+TWO_NUMBERS = "A time range is two whole numbers: the first frame, counted from 0, and how many"
+ONE_NUMBER = "The frame is a whole number: the first one has the number 0"
 
 
 @dataclass(frozen=True)
@@ -200,13 +200,23 @@ def _chosen(
 
 
 def _crop(sample: Sample, numbers: list[str], field: str, errors: dict[str, str]) -> Rectangle | None:
+    wrong = [f"got {said(text)} for {side}" for side, text in zip(SIDES, numbers, strict=True) if _number(text) is None]
+    if wrong:
+        errors[field] = f"{FOUR_NUMBERS}; {', '.join(wrong)}." + (OR_NONE if field != "crop" else "")
+        return None
     try:
-        return Rectangle(*map(whole, numbers)).within(sample.width, sample.height)
+        return Rectangle(*(_number(text) or 0 for text in numbers)).within(sample.width, sample.height)
     except InvalidInputError as error:
         errors[field] = error.message
-    except ValueError:
-        errors[field] = FOUR_NUMBERS + (OR_NONE if field != "crop" else "")
     return None
+
+
+def _number(text: str) -> int | None:
+    """The whole number that a person typed, None if it is none."""
+    try:
+        return whole(plain(text, whole=True))
+    except ValueError:
+        return None
 
 
 def _frames(
@@ -215,16 +225,19 @@ def _frames(
     if not sample.moving:
         return None
     first, count = (values.get(name, "").strip() for name in time_names(number))
+    given = {"the first frame": first or "0"} | ({"their number": count} if wanted.moving and count else {})
+    wrong = [f"got {said(text)} for {name}" for name, text in given.items() if _number(text) is None]
+    if wrong:
+        errors[f"{prefix(number)}time"] = f"{TWO_NUMBERS if wanted.moving else ONE_NUMBER}; {', '.join(wrong)}."
+        return None
     try:
         return _range(sample, first, count if wanted.moving else "1")
     except InvalidInputError as error:
         errors[f"{prefix(number)}time"] = error.message
-    except ValueError:
-        errors[f"{prefix(number)}time"] = TWO_NUMBERS if wanted.moving else ONE_NUMBER
     return None
 
 
 def _range(sample: Sample, first: str, count: str) -> Frames:
     """Read a time range; left empty it begins with the first frame, and ends with the last."""
-    begin = whole(first) if first else 0
-    return Frames(begin, whole(count) if count else sample.frames - begin).within(sample.frames)
+    begin = whole(plain(first, whole=True)) if first else 0
+    return Frames(begin, whole(plain(count, whole=True)) if count else sample.frames - begin).within(sample.frames)

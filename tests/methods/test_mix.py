@@ -34,7 +34,12 @@ def sizes(count):
 
 @pytest.mark.parametrize(
     ("weights", "shares"),
-    [("", [0.5, 0.5]), (" ", [0.5, 0.5]), ("2,2", [0.5, 0.5]), ("0.3, 0.7", [0.3, 0.7]), ("0,8", [0, 1])],
+    [
+        ("", [0.5, 0.5]), (" ", [0.5, 0.5]), ("2,2", [0.5, 0.5]), ("0.3, 0.7", [0.3, 0.7]), ("0,8", [0, 1]),
+        ("0,3; 0,7", [0.3, 0.7]), ("0,3;0,7", [0.3, 0.7]), ("0.3;0.7", [0.3, 0.7]), ("0,3 0,7", [0.3, 0.7]),
+        ("0.3 0.7", [0.3, 0.7]), ("1 3", [0.25, 0.75]), ("1;3", [0.25, 0.75]), ("1, 3", [0.25, 0.75]),
+        ("1 ,3", [0.25, 0.75]), ("0.5,  0.5", [0.5, 0.5]),
+    ],
 )  # fmt: skip
 def test_only_the_proportions_of_the_weights_count(weights, shares):
     params = MixParams(weights=weights)
@@ -42,7 +47,16 @@ def test_only_the_proportions_of_the_weights_count(weights, shares):
     assert params.shares(2) == pytest.approx(shares)
 
 
-@pytest.mark.parametrize("weights", ["a", "1,", "1;2", "-1,2", "0,0", "nan,1", "inf,1", "1e308,1e308", "1," * 60])
+@pytest.mark.parametrize(("weights", "said"), [("0,3; 0,7", "0.3,0.7"), ("1 ,3", "1,3"), ("0.30,0.70", "0.30,0.70")])
+def test_weights_are_said_back_as_they_were_understood(weights, said):
+    assert MixParams(weights=weights).weights == said
+
+
+@pytest.mark.parametrize(
+    "weights",
+    ["a", "1,", "1;", "1;;2", "-1,2", "0,0", "nan,1", "inf,1", "1e308,1e308", "1," * 60,
+     "0,5, 0,5", "1.000,5; 2", "1, 2 3"],
+)  # fmt: skip
 def test_weights_that_are_none_are_refused(weights):
     with pytest.raises(ValidationError):
         MixParams(weights=weights)

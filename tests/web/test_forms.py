@@ -38,6 +38,7 @@ def test_every_kind_of_parameter_becomes_a_field() -> None:
     ]
     assert found["scale"].advanced
     assert (found["scale"].minimum, found["scale"].maximum, found["scale"].default) == ("0", "2", "0.5")
+    assert (found["scale"].step, found["levels"].step, found["kind"].step) == ("0.01", "1", "")
     assert (found["levels"].minimum, found["levels"].default) == ("1", "")
     assert found["kind"].choices == ("one", "two")
     assert found["exact"].default == "on"
@@ -79,13 +80,53 @@ def test_a_switch_that_is_not_sent_is_off(method: Method) -> None:
 def test_every_field_at_fault_gets_its_own_message(method: Method) -> None:
     parsed = parse(method, {"seed": "-1", "test.scale": "wide", "test.levels": "2.5", "test.kind": "three"})
     assert set(parsed.errors) == {"seed", "test.scale", "test.levels", "test.kind"}
-    assert parsed.errors["test.kind"] == "Kind is one of: one, two."
-    assert parsed.errors["test.levels"] == "Levels is a whole number from 1 on."
+    assert parsed.errors["test.kind"] == 'Kind is one of: one, two; got "three".'
+    assert parsed.errors["test.levels"] == 'Levels is a whole number from 1 on; got "2.5".'
 
 
 def test_a_text_at_fault_gets_the_words_of_what_refused_it(method: Method) -> None:
     assert parse(method, {"test.shares": "1, 2, 3"}).errors == {
-        "test.shares": "Shares: string should have at most 5 characters."
+        "test.shares": 'Shares: string should have at most 5 characters; got "1, 2, 3".'
+    }
+
+
+@pytest.mark.parametrize(
+    ("typed", "number"),
+    [
+        ("0,25", 0.25),
+        ("0.25", 0.25),
+        (" 1,5 ", 1.5),
+        (",5", 0.5),
+        ("1.", 1),
+        ("+1", 1),
+        ("1,25e0", 1.25),
+        ("１，５", 1.5),
+    ],
+)
+def test_a_decimal_comma_is_a_decimal_point(method: Method, typed: str, number: float) -> None:
+    assert parse(method, {"test.scale": typed}).parameters["scale"] == number
+
+
+@pytest.mark.parametrize(
+    "typed", ["1.234,5", "1,234.5", "1,2,3", "1.2.3", "1 000", "1_0", "0x1", "1,5 px", ",", "nan", "½"]
+)
+def test_a_number_that_could_be_another_one_is_refused_with_its_name(method: Method, typed: str) -> None:
+    assert parse(method, {"test.scale": typed}).errors == {
+        "test.scale": f'Scale is a number from 0 to 2; got "{typed}".'
+    }
+
+
+@pytest.mark.parametrize(("typed", "number"), [("12", 12), (" 12 ", 12), ("007", 7), ("12.0", 12), ("12,00", 12)])
+def test_whole_numbers_are_read_as_people_write_them(method: Method, typed: str, number: int) -> None:
+    assert parse(method, {"test.levels": typed}).parameters["levels"] == number
+
+
+@pytest.mark.parametrize("typed", ["12,5", "12.5", "1.000", "1,000", "1 000", "1_000", "1e3", "12,", "a"])
+def test_what_is_no_whole_number_is_refused_with_its_name(method: Method, typed: str) -> None:
+    """Not 125, and not 12 or 13 either; and 1.000 may be one or a thousand."""
+    assert parse(method, {"test.levels": typed, "test.scale": "9"}).errors == {
+        "test.scale": 'Scale is a number from 0 to 2; got "9".',
+        "test.levels": f'Levels is a whole number from 1 on; got "{typed}".',
     }
 
 

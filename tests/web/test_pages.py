@@ -157,6 +157,15 @@ def test_a_submitted_form_becomes_an_experiment(site: Any) -> None:
     assert record["listed"] is False
 
 
+def test_a_plain_form_takes_decimal_commas(site: Any) -> None:
+    """As the script would have sent them, and as the record then says."""
+    answer = site.client.post("/experiments", data={**FORM, "rpn.alpha": "0,25", "crop.x": " 4 ", "seed": "3.0"})
+    assert answer.status_code == 303
+    record = site.client.get("/api/v1" + answer.headers["location"]).json()
+    assert (record["parameters"]["alpha"], record["parameters"]["seed"]) == (0.25, 3)
+    assert record["inputs"][0]["crop"]["x"] == 4
+
+
 def test_half_a_pixel_is_rounded_up_as_on_the_command_line(site: Any) -> None:
     odd = {**FORM, "crop.width": "31", "crop.height": "23", "size": "1.5"}
     answer = site.client.post("/experiments", data=odd)
@@ -169,7 +178,15 @@ def test_half_a_pixel_is_rounded_up_as_on_the_command_line(site: Any) -> None:
     ("changed", "field", "words"),
     [
         ({"crop.x": "60"}, "crop", "reaches outside the photograph"),
-        ({"crop.width": "abc"}, "crop", "four whole numbers"),
+        (
+            {"crop.width": "abc"},
+            "crop",
+            "four whole numbers: x, y, width and height in pixels; got &#34;abc&#34; for width.",
+        ),
+        ({"crop.x": "12,5"}, "crop", "got &#34;12,5&#34; for x."),
+        ({"crop.y": "1.000", "crop.x": ""}, "crop", "got &#34;&#34; for x, got &#34;1.000&#34; for y."),
+        ({"rpn.alpha": "1.234,5"}, "rpn-alpha", "is a number from 0 to 0.5; got &#34;1.234,5&#34;."),
+        ({"width": "64,5", "size": "free"}, "width", "Width is a whole number from 1 to 1000000; got &#34;64,5&#34;."),
         ({"seed": "-1"}, "seed", "Seed is a whole number"),
         ({"rpn.alpha": "0.9"}, "rpn-alpha", "from 0 to 0.5"),
         ({"rpn.add_smooth": "on", "size": "2"}, "rpn-add_smooth", "smooth component"),

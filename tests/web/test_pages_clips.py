@@ -119,6 +119,8 @@ def test_the_time_range_is_what_a_method_is_given(
         (MOVING, {"time.first": "4", "time.count": "4"}, "reaches outside the sample, which has 6 frames"),
         (MOVING, {"time.first": "-1"}, "reaches outside"),
         (MOVING, {"time.first": "a"}, "two whole numbers"),
+        (MOVING, {"time.first": "1,5"}, "got &#34;1,5&#34; for the first frame"),
+        (MOVING, {"time.count": "2.5"}, "got &#34;2.5&#34; for their number"),
         (MOVING, {"time.count": "1"}, "at least 2 frames"),
         (MOVING, {"time.first": "9"}, "at least 1 frame"),
         ("rpn", {"time.first": "6"}, "reaches outside"),
