@@ -1,20 +1,25 @@
-// The crop on a photograph. The four numeric fields are the truth: the box shows them, and dragging writes to them.
-// Every change is told to the form as a "crop" event.
+// The crop on a photograph or a clip: the box shows what the four number fields say, and dragging writes to them. Every change
+// is told to the form as a "crop" event, and can be taken back.
 
-import { fitted, moved, resized, spanned } from "./rectangle.js";
+import { Box } from "./crop_box.js";
+import { Gestures } from "./crop_gestures.js";
+import { Steps } from "./crop_history.js";
+import { Zoom } from "./crop_zoom.js";
+import { NumberGroup } from "./number_group.js";
+import { fitted, moved, resized, same, spanned } from "./rectangle.js";
 
 export const SIDES = ["x", "y", "width", "height"];
-const EDGES = ["nw", "n", "ne", "e", "se", "s", "sw", "w"];
 const LARGEST = 3; // times that a small photograph is enlarged on the screen
-const SLOP = 4; // screen pixels that a press may slip and still be no drag
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
-const KEYS = "Arrow keys move the crop, with Shift they resize it, with Ctrl ten pixels at a time.";
+const ZOOMS = { "+": "in", "=": "in", "-": "out", 0: "fit" };
+const WHOLE_AGAIN = 1.02; // an enlargement that is none
 
-function element(name, attributes, parent) {
-  const made = document.createElement(name);
-  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
-  parent.append(made);
-  return made;
+/** Say what had to give way to the side that was typed. */
+function gaveWay(side, wanted, crop) {
+  const long = { x: "width", y: "height" }[side] ?? side;
+  const start = long === "width" ? "x" : "y";
+  if (crop[long] !== wanted[long]) return `The ${long} is ${crop[long]} now: there is no more.`;
+  return `${start} is ${crop[start]} now: from ${wanted[start]} on, a ${long} of ${wanted[long]} does not fit.`;
 }
 
 /** The editor of one input's crop; `root` holds the photograph's frame and the fields. */
@@ -23,12 +28,32 @@ export class Crop {
     this.form = root.closest("form");
     this.frame = root.querySelector(".frame");
     this.ground = this.frame.parentElement;
-    this.fields = Object.fromEntries(SIDES.map((side) => [side, root.querySelector(`[data-side=${side}]`)]));
     this.tools = root.querySelector("[id$=crop-tools]");
     this.readout = root.querySelector("[id$=crop-size]");
-    this.scale = 1; // screen pixels per pixel of the original
-    this.drag = null;
-    this.build(root.querySelector("legend"));
+    this.box = new Box(this.frame, root.querySelector("legend"));
+    this.zoom = new Zoom();
+    this.steps = new Steps();
+    this.drawing = false; // whether the next drag draws, wherever it begins
+    const fields = SIDES.map((side) => [side, root.querySelector(`[data-side=${side}]`)]);
+    this.fields = new NumberGroup(Object.fromEntries(fields), root.querySelector("[data-fit=crop]"), {
+      read: () => this.fields.read((side) => this.steps.now[side]),
+      fitted: (crop) => fitted(crop, this.size),
+      words: gaveWay,
+      typed: (crop) => this.preview(crop ?? this.steps.now),
+      left: (crop) => this.change(crop),
+    });
+    this.gestures = new Gestures(this.frame, {
+      kind: (event, finger) => this.kind(event, finger),
+      begin: (drag) => this.begin(drag),
+      dragged: (drag, at) => this.pull(drag, at),
+      end: (drag) => this.end(drag),
+      cancel: (drag) => drag.under && this.put(drag.before),
+      grip: (at) => ({ ...this.at(at), times: this.zoom.times }),
+      zoom: (grip, factor, at) => this.look(grip, at, grip.times * factor),
+      settle: () => this.settle(),
+    });
+    this.tools.hidden = false;
+    for (const hint of root.querySelectorAll(".gestures")) hint.hidden = false;
     this.listen();
     this.readSize();
     this.follow();
@@ -36,25 +61,18 @@ export class Crop {
     window.addEventListener("resize", () => this.layOut());
   }
 
-  build(legend) {
-    const shade = element("div", { class: "shade", "aria-hidden": "true" }, this.frame);
-    this.dark = element("span", {}, shade);
-    const keys = element("span", { id: `${legend.id}-keys`, hidden: "" }, this.frame);
-    keys.textContent = `Crop. ${KEYS}`;
-    const names = { tabindex: "0", role: "application", "aria-labelledby": `${legend.id} ${keys.id}` };
-    this.box = element("div", { class: "box", ...names }, this.frame);
-    for (const edge of EDGES) element("span", { class: "handle", "data-edge": edge }, this.box);
-    this.label = element("span", { class: "readout", "aria-hidden": "true" }, this.box);
-    this.tools.hidden = false;
-  }
-
   readSize() {
     this.size = { width: Number(this.frame.dataset.width), height: Number(this.frame.dataset.height) };
+    const { width, height } = this.size;
+    if (!width) return;
+    const most = { x: width - 1, y: height - 1, width, height };
+    for (const side of SIDES) this.fields.fields[side].dataset.max = most[side];
   }
 
   get suggested() {
-    const wanted = this.tools.querySelector("button:last-of-type").dataset.crop.split(",").map(Number);
-    return wanted.length === 4 ? wanted : [0, 0, this.size.width, this.size.height];
+    const wanted = this.tools.querySelector("[data-suggested]").dataset.crop.split(",").map(Number);
+    const [x, y, width, height] = wanted.length === 4 ? wanted : [0, 0, this.size.width, this.size.height];
+    return { x, y, width, height };
   }
 
   /** Show another photograph, or a clip if it has an address as such, with the crop to start from. */
@@ -66,29 +84,28 @@ export class Crop {
     Object.assign(shown, { width, height });
     this.frame.prepend(shown);
     Object.assign(this.frame.dataset, { width, height });
-    this.tools.querySelector("button").textContent = video ? "Whole frame" : "Whole photograph";
-    this.tools.querySelector("button:last-of-type").dataset.crop = crop;
-    const most = { x: width - 1, y: height - 1, width, height };
-    for (const side of SIDES) this.fields[side].max = most[side];
+    this.tools.querySelector("[data-crop=all]").textContent = video ? "Whole frame" : "Whole photograph";
+    this.tools.querySelector("[data-suggested]").dataset.crop = crop;
     this.readSize();
-    const [x, y, wide, high] = this.suggested;
-    this.shown = { x, y, width: wide, height: high };
+    this.zoom.whole();
+    this.steps.start(this.suggested);
+    this.shown = this.suggested;
     this.layOut();
-    this.write(this.shown);
+    this.put(this.shown);
   }
 
   read() {
-    const values = Object.fromEntries(SIDES.map((side) => [side, Math.round(Number(this.fields[side].value))]));
-    const said = SIDES.every((side) => this.fields[side].value.trim() !== "" && Number.isFinite(values[side]));
-    return said ? values : null;
+    return this.fields.read();
   }
 
   /** Take what the fields say; those left empty take the crop to start from. */
   follow() {
-    const [x, y, width, height] = this.suggested;
-    const empty = SIDES.every((side) => this.fields[side].value === "");
-    this.shown = fitted(this.read() ?? this.shown ?? { x, y, width, height }, "width", this.size);
-    if (empty && this.size.width) for (const side of SIDES) this.fields[side].value = this.shown[side];
+    const { empty } = this.fields;
+    const crop = fitted(this.read() ?? this.shown ?? this.suggested, this.size);
+    if (!this.shown || !same(crop, this.shown)) this.steps.start(crop);
+    this.shown = crop;
+    if (empty && this.size.width) this.fields.write(crop);
+    this.draw(); // also says what it is where nothing is on the screen yet
     this.layOut();
   }
 
@@ -98,64 +115,78 @@ export class Crop {
     if (room <= 0 || !this.size.width) return; // not on the screen
     const narrow = window.matchMedia("(max-width: 960px)").matches;
     const tall = Math.max(240, narrow ? window.innerHeight * 0.6 : window.innerHeight - 360);
-    this.scale = Math.min(room / this.size.width, tall / this.size.height, LARGEST);
-    this.frame.style.width = `${this.size.width * this.scale}px`;
-    this.frame.style.height = `${this.size.height * this.scale}px`;
+    const scale = Math.min(room / this.size.width, tall / this.size.height, LARGEST);
+    this.frame.style.width = `${this.size.width * scale}px`;
+    this.frame.style.height = `${this.size.height * scale}px`;
     this.frame.classList.add("ready");
+    this.zoom.layOut(this.size, scale);
     this.draw();
   }
 
   draw() {
-    const { scale, size } = this;
-    const crop = fitted(this.shown, "width", size);
-    const [left, top, width, height] = SIDES.map((side) => crop[side] * scale);
-    Object.assign(this.box.style, { left: `${left}px`, top: `${top}px`, width: `${width}px`, height: `${height}px` });
-    const [wide, high] = [size.width * scale, size.height * scale];
-    const hole = [[left, top], [left, top + height], [left + width, top + height], [left + width, top], [left, top]];
-    const outer = [[0, 0], [wide, 0], [wide, high], [0, high], [0, 0]];
-    this.dark.style.clipPath = `polygon(evenodd, ${[...outer, ...hole].map(([x, y]) => `${x}px ${y}px`).join(", ")})`;
-    this.label.textContent = `${crop.width} × ${crop.height}`;
-    this.box.classList.toggle("small", width < 120 || height < 64);
-    this.box.classList.toggle("tiny", width < 88 || height < 88);
-    this.box.classList.toggle("low", top + height + 52 > high);
-    const percent = Math.round(scale * 100);
-    this.readout.textContent = `${crop.width} × ${crop.height} of ${size.width} × ${size.height} at ${percent} %`;
+    const { zoom, size, steps } = this;
+    if (size.width) this.frame.dataset.crop = SIDES.map((side) => this.shown[side]).join(",");
+    if (!zoom.size) return; // not laid out yet
+    const { width, height } = this.shown;
+    this.box.draw(this.shown, zoom, size.width * zoom.base, size.height * zoom.base);
+    const at = `translate(${-zoom.x * zoom.scale}px, ${-zoom.y * zoom.scale}px) scale(${zoom.times})`;
+    this.frame.querySelector("img, video").style.transform = zoom.zoomed ? at : "";
+    this.frame.classList.toggle("zoomed", zoom.zoomed);
+    this.frame.classList.toggle("drawing", this.drawing);
+    const off = { undo: !steps.past.length, redo: !steps.future.length, in: zoom.largest, out: !zoom.zoomed, fit: !zoom.zoomed };
+    for (const [tool, none] of Object.entries(off)) this.tool(tool).setAttribute("aria-disabled", String(none)); // keeps the focus
+    this.tool("draw").setAttribute("aria-pressed", String(this.drawing));
+    this.readout.textContent = this.drawing
+      ? "Drag from one corner of the new crop to the other."
+      : `${width} × ${height} of ${size.width} × ${size.height} at ${Math.round(zoom.scale * 100)} %`;
   }
 
-  write(crop) {
+  tool(name) {
+    return this.tools.querySelector(`[data-tool=${name}]`);
+  }
+
+  /** Show a crop that may still change. */
+  put(crop) {
+    this.fields.write(crop);
+    this.preview(crop);
+  }
+
+  /** Show what the fields say. */
+  preview(crop) {
     this.shown = crop;
-    for (const side of SIDES) this.fields[side].value = crop[side];
     this.draw();
     this.form.dispatchEvent(new CustomEvent("crop"));
   }
 
+  /** Set the crop; a change that goes on is one with the change before. */
+  write(crop, goesOn = false) {
+    this.steps.keep(crop, goesOn);
+    this.put(crop);
+  }
+
+  /** Set the crop other than by a pointer, and bring it into view. */
+  change(crop, goesOn = false) {
+    this.zoom.reveal(crop);
+    this.write(crop, goesOn);
+  }
+
+  undo(way = "undo") {
+    this.gestures.cancel();
+    const written = this.read();
+    // What is half typed, or no number, goes first.
+    if (way === "redo" || (written && same(written, this.steps.now))) this.steps[way]();
+    this.change(this.steps.now);
+  }
+
   listen() {
-    this.frame.addEventListener("pointerdown", (event) => this.press(event));
-    this.frame.addEventListener("pointermove", (event) => this.pull(event));
-    const letGo = (event) => {
-      if (event.pointerId === this.drag?.id) this.drag = null;
-    };
-    this.frame.addEventListener("pointerup", letGo);
-    this.frame.addEventListener("pointercancel", letGo);
-    this.box.addEventListener("keydown", (event) => this.key(event));
-    for (const side of SIDES) {
-      this.fields[side].addEventListener("input", () => {
-        const typed = this.read();
-        if (!typed) return;
-        this.shown = fitted(typed, side, this.size);
-        this.draw();
-        // What does not fit yet is told when it has been made to, once the field is left.
-        if (SIDES.every((each) => typed[each] === this.shown[each])) this.form.dispatchEvent(new CustomEvent("crop"));
-      });
-      this.fields[side].addEventListener("change", () => this.write(this.shown));
-    }
-    this.tools.addEventListener("click", (event) => {
-      const wanted = event.target.dataset.crop;
-      if (!wanted) return;
-      const { width: wide, height: high } = this.size;
-      const [x, y, width, height] = wanted === "all" ? [0, 0, wide, high] : wanted.split(",").map(Number);
-      this.write({ x, y, width, height });
+    this.box.element.addEventListener("keydown", (event) => this.key(event));
+    this.box.element.addEventListener("focus", () => {
+      if (!this.zoom.zoomed || this.gestures.drag) return;
+      this.zoom.reveal(this.shown);
+      this.draw();
     });
+    this.tools.addEventListener("click", ({ target }) => this.use(target.closest("button")));
+    for (const part of [this.frame, this.tools]) part.addEventListener("keydown", (event) => this.command(event));
     // Browsers put back what was in the fields when one returns to the page; the box follows.
     window.addEventListener("pageshow", () => {
       this.follow();
@@ -163,47 +194,106 @@ export class Crop {
     });
   }
 
-  at(event) {
+  use(button) {
+    if (!button || button.getAttribute("aria-disabled") === "true") return;
+    const { tool, crop } = button.dataset;
+    if (crop === "all") this.change({ x: 0, y: 0, ...this.size });
+    else if (crop) this.change(this.suggested);
+    else if (tool === "draw") this.arm(!this.drawing);
+    else if (tool === "undo" || tool === "redo") this.undo(tool);
+    else this.enlarge(tool);
+  }
+
+  /** Let the next drag draw a crop, or not. */
+  arm(on) {
+    this.drawing = on;
+    this.draw();
+  }
+
+  /** Zoom by a step about the middle of the crop, or of what is seen where the crop is not. */
+  enlarge(way) {
+    const { x, y, width, height } = this.shown;
+    if (way === "fit") this.zoom.whole();
+    else this.zoom.about(way === "in" ? Math.SQRT2 : Math.SQRT1_2, { x: x + width / 2, y: y + height / 2 });
+    if (way === "in") this.zoom.reveal(this.shown);
+    this.settle();
+  }
+
+  /** Bring a point of the original to a place on the screen. */
+  look(point, [left, top], times) {
     const bounds = this.frame.getBoundingClientRect();
-    return { x: (event.clientX - bounds.left) / this.scale, y: (event.clientY - bounds.top) / this.scale };
+    this.zoom.hold(point, left - bounds.left, top - bounds.top, times);
+    this.draw();
   }
 
-  press(event) {
-    if (event.button !== 0 || this.drag) return;
-    event.preventDefault();
-    const { size, shown } = this;
-    const { edge } = event.target.dataset ?? {};
-    const everything = shown.width === size.width && shown.height === size.height; // cannot be moved: a drag draws anew
-    const kind = edge ? "resize" : event.target === this.box && !everything ? "move" : "draw";
-    const screen = [event.clientX, event.clientY];
-    this.drag = { kind, edge, id: event.pointerId, from: this.at(event), screen, before: shown, under: false };
-    this.frame.setPointerCapture(event.pointerId);
-    this.box.focus({ preventScroll: true });
+  settle() {
+    if (this.zoom.times < WHOLE_AGAIN) this.zoom.whole();
+    this.draw();
   }
 
-  pull(event) {
-    const { drag, size } = this;
-    if (event.pointerId !== drag?.id) return;
-    const slipped = Math.hypot(event.clientX - drag.screen[0], event.clientY - drag.screen[1]);
-    drag.under ||= slipped >= SLOP;
-    if (!drag.under) return;
-    const to = this.at(event);
+  /** Where in the original a place on the screen is. */
+  at([left, top]) {
+    const bounds = this.frame.getBoundingClientRect();
+    return { x: this.zoom.x + (left - bounds.left) / this.zoom.scale, y: this.zoom.y + (top - bounds.top) / this.zoom.scale };
+  }
+
+  /** What a press on the frame drags, if anything: a finger that neither moves the crop nor the view scrolls the page. */
+  kind({ button, target }, finger) {
+    const onBox = target === this.box.element;
+    if (button === 1) return this.zoom.zoomed && "pan";
+    if (this.drawing) return "draw";
+    if (target.dataset.edge) return "resize";
+    if (finger) return onBox && !this.box.fills ? "move" : this.zoom.zoomed && "pan";
+    const everything = same(this.shown, { x: 0, y: 0, ...this.size }); // cannot be moved: a drag draws anew
+    return onBox && !everything ? "move" : "draw";
+  }
+
+  begin(drag) {
+    if (drag.kind !== "pan") this.box.element.focus({ preventScroll: true }); // and a number field is left
+    Object.assign(drag, { from: this.at(drag.screen), before: this.shown });
+  }
+
+  pull(drag, screen) {
+    const [to, { size }] = [this.at(screen), this];
     const [dx, dy] = [to.x - drag.from.x, to.y - drag.from.y];
-    if (drag.kind === "draw") this.write(spanned(drag.from, to, size));
-    else if (drag.kind === "move") this.write(moved(drag.before, dx, dy, size));
-    else this.write(resized(drag.before, drag.edge, dx, dy, size));
+    if (drag.kind === "pan") this.look(drag.from, screen);
+    else if (drag.kind === "move") this.put(moved(drag.before, dx, dy, size));
+    else if (drag.kind === "resize") this.put(resized(drag.before, drag.edge, dx, dy, size));
+    else {
+      const drawn = spanned(drag.from, to, size);
+      drag.drawn = Math.min(drawn.width, drawn.height) * this.zoom.scale >= drag.slop; // a line is a slip
+      this.put(drag.drawn ? drawn : drag.before);
+    }
+  }
+
+  end(drag) {
+    if (drag.drawn) this.drawing = false;
+    if (drag.under) this.write(this.shown);
+  }
+
+  /** Keys of the whole editor, but not of its number fields, which take back what was typed by themselves. */
+  command(event) {
+    if (event.key === "Escape") {
+      this.gestures.cancel();
+      this.arm(false);
+    }
+    if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
+    const letter = event.key.toLowerCase();
+    const way = { z: event.shiftKey ? "redo" : "undo", y: "redo" }[letter];
+    if (!way) return;
+    event.preventDefault();
+    this.undo(way);
   }
 
   key(event) {
-    if (event.key === "Escape" && this.drag) {
-      const { before } = this.drag;
-      this.drag = null;
-      this.write(before);
-    }
     const arrow = ARROWS[event.key];
-    if (!arrow || event.altKey || event.metaKey) return;
+    if (event.altKey || event.metaKey) return;
+    if (ZOOMS[event.key] && !event.ctrlKey) this.enlarge(ZOOMS[event.key]);
+    else if (arrow) {
+      const [dx, dy] = arrow.map((step) => step * (event.ctrlKey ? 10 : 1));
+      const { shown, size } = this;
+      this.change(event.shiftKey ? resized(shown, "se", dx, dy, size) : moved(shown, dx, dy, size), event.repeat);
+    } else return;
     event.preventDefault();
-    const [dx, dy] = arrow.map((step) => step * (event.ctrlKey ? 10 : 1));
-    this.write(event.shiftKey ? resized(this.shown, "se", dx, dy, this.size) : moved(this.shown, dx, dy, this.size));
   }
 }

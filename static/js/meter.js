@@ -5,7 +5,6 @@
 import { ask } from "./answers.js";
 import { start } from "./start.js";
 
-const SIDES = ["x", "y", "width", "height"];
 const PATIENCE = 20_000; // milliseconds for one answer
 const [SOON, LATE] = [2_000, 60_000]; // milliseconds until a question that failed is asked again: from, doubling, up to
 
@@ -13,8 +12,8 @@ class Meter {
   constructor(root) {
     this.root = root;
     const around = root.closest("fieldset, form");
-    this.fields = SIDES.map((side) => around.querySelector(`[name$="crop.${side}"]`));
-    this.frame = around.querySelector("[name$='time.first']");
+    this.frame = around.querySelector(".frame");
+    this.time = around.querySelector(".time");
     this.select = around.querySelector("select[name$=sample]");
     this.bar = root.querySelector(".meter-bar");
     this.sentence = root.querySelector(".structure-words");
@@ -42,10 +41,11 @@ class Meter {
 
   /** What to ask; nothing where there is no crop to ask about. */
   address() {
-    const crop = this.fields.map((field) => field.value);
-    if (!this.shown || !crop.every((value) => /^\d+$/.test(value))) return "";
-    const frame = this.frame.closest(".time").hidden || !/^\d+$/.test(this.frame.value) ? "" : `&frame=${this.frame.value}`;
-    return `/api/v1/samples/${encodeURIComponent(this.sample)}/structure?crop=${crop.join(",")}${frame}`;
+    const { crop } = this.frame.dataset; // what the box shows, for numbers that are being typed may not fit
+    if (!this.shown || !crop) return "";
+    const { first } = this.time.dataset;
+    const frame = this.time.hidden || first === undefined ? "" : `&frame=${first}`;
+    return `/api/v1/samples/${encodeURIComponent(this.sample)}/structure?crop=${crop}${frame}`;
   }
 
   async follow() {
@@ -56,7 +56,7 @@ class Meter {
       for (let address = this.address(); address !== this.asked; address = this.address()) {
         this.asked = address;
         if (address) this.show(await ask(address, { patience: PATIENCE }));
-        else if (this.shown) this.forget(""); // a crop that is being typed
+        else if (this.shown) this.forget("");
       }
       this.pause = SOON;
     } catch (refusal) {

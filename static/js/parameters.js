@@ -4,18 +4,15 @@
 const SEEDS = 1_000_000;
 const form = document.querySelector("#experiment");
 const { size, width, height, seed, frames } = form.elements;
-const crop = cropOf("");
 const total = document.querySelector("#run-size");
 const ORDINALS = ["first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth"];
 let pending = 0;
 
-function cropOf(prefix) {
-  return Object.fromEntries(["x", "y", "width", "height"].map((side) => [side, form.elements[`${prefix}crop.${side}`]]));
-}
+/** The crop of an input as its box shows it: what is being typed may be no crop yet. */
+const cropOf = (prefix) => document.querySelector(`#${prefix.replace(".", "-")}frame`).dataset.crop ?? "";
 
 const chosen = () => form.elements.method.value;
 const radio = () => document.querySelector(`#method-${chosen()}`);
-const numbers = (fields) => ["x", "y", "width", "height"].map((side) => fields[side].value).join(",");
 const range = (prefix) => ["first", "count"].map((part) => form.elements[`${prefix}time.${part}`].value);
 const asks = (entry) => radio().classList.contains(`asks-${entry.name}`); // of those shared by moving methods
 const own = (method) => [...form.elements].filter((entry) => entry.name.startsWith(`${method}.`));
@@ -30,10 +27,10 @@ function time(prefix) {
 function followCrop() {
   const follows = "follows" in radio().dataset; // else the method itself finds how large its texture is to be
   size.options[0].textContent = follows ? "the crop’s" : "the method’s";
-  const grown = (side) => Math.floor(Number(crop[side].value) * Number(size.value) + 0.5);
-  const known = follows || size.value !== "1";
-  if (size.value !== "free") [width.value, height.value] = known ? [grown("width"), grown("height")] : ["", ""];
-  const [w, h] = [width.value || (follows && crop.width.value), height.value || (follows && crop.height.value)];
+  const sides = cropOf("").split(",").slice(2);
+  const grown = sides.map((side) => Math.floor(Number(side) * Number(size.value) + 0.5));
+  if (size.value !== "free") [width.value, height.value] = follows || size.value !== "1" ? grown : ["", ""];
+  const [w, h] = [width, height].map((field, axis) => field.value || (follows && sides[axis]));
   frames.placeholder = range("")[1];
   const many = asks(frames) && (frames.value || frames.placeholder);
   const long = many ? `, ${many} frames` : "";
@@ -46,13 +43,13 @@ function followCrop() {
 function keepInAddress() {
   const query = new URLSearchParams();
   query.set("method", chosen());
-  query.set("crop", numbers(crop));
+  query.set("crop", cropOf(""));
   if (time("")) query.set("time", time(""));
   for (let number = 2; radio().classList.contains(`takes-${number}`); number += 1) {
     const prefix = `input-${number}.`;
     const sample = form.elements[`${prefix}sample`].value;
     const when = time(prefix) && `@${time(prefix)}`;
-    if (sample) query.set(ORDINALS[number - 1], `${sample}:${numbers(cropOf(prefix))}${when}`);
+    if (sample) query.set(ORDINALS[number - 1], `${sample}:${cropOf(prefix)}${when}`);
   }
   if (size.value !== "1") query.set("size", size.value);
   if (size.value === "free") {

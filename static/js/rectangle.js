@@ -31,18 +31,10 @@ export function resized(rectangle, edges, dx, dy, size) {
   return { x: left, y: top, width: right - left, height: bottom - top };
 }
 
-/** Make numbers that were typed fit, keeping the one typed last (`kept`: "x", "y", "width" or "height"). */
-export function fitted(rectangle, kept, size) {
-  const [x, width] = fitAxis(rectangle.x, rectangle.width, kept === "x", size.width);
-  const [y, height] = fitAxis(rectangle.y, rectangle.height, kept === "y", size.height);
-  return { x, y, width, height };
+/** Make numbers that were typed fit: what is too long shrinks to the photograph, and then moves to where it fits. */
+export function fitted({ x, y, width, height }, size) {
+  const [wide, high] = [between(width, 1, size.width), between(height, 1, size.height)];
+  return { x: between(x, 0, size.width - wide), y: between(y, 0, size.height - high), width: wide, height: high };
 }
 
-function fitAxis(start, length, startKept, total) {
-  if (startKept) {
-    const from = between(start, 0, total - 1);
-    return [from, between(length, 1, total - from)];
-  }
-  const long = between(length, 1, total);
-  return [between(start, 0, total - long), long];
-}
+export const same = (one, other) => ["x", "y", "width", "height"].every((side) => one[side] === other[side]);

@@ -2,6 +2,7 @@
 // and shows their frames. Of a clip, a still method takes the one frame at the first end. Changes are "crop" events.
 
 import { Clip, REDUCED } from "./clip.js";
+import { NumberGroup } from "./number_group.js";
 
 const KEYS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10, Home: -Infinity, End: Infinity };
 const PARTS = { range: "Time range", first: "First frame", last: "Last frame" };
@@ -14,13 +15,32 @@ function element(name, attributes, parent) {
   return made;
 }
 
+/** Say what had to give way to the number that was typed. */
+function gaveWay(wanted, range) {
+  if (range.count > wanted.count) return "A video has 2 frames or more.";
+  if (range.count < wanted.count) return `It is ${range.count} frames now: the clip has no more.`;
+  return `It begins with frame ${range.first} now: from ${wanted.first} on, ${wanted.count} frames do not fit.`;
+}
+
 /** The editor of one input's time range; `root` holds the picture's frame and the fields. */
 export class TimeRange {
   constructor(root) {
     this.root = root;
     this.form = root.closest("form");
     this.block = root.querySelector(".time");
-    this.fields = { first: root.querySelector("[data-time=first]"), count: root.querySelector("[data-time=count]") };
+    const fields = ["first", "count"].map((part) => [part, root.querySelector(`[data-time=${part}]`)]);
+    this.fields = Object.fromEntries(fields);
+    this.group = new NumberGroup(this.fields, root.querySelector("[data-fit=time]"), {
+      read: () => this.read(),
+      fitted: (range) => this.fitted(range),
+      words: (part, wanted, range) => (this.moving ? gaveWay(wanted, range) : `The last frame of the clip is ${range.first}.`),
+      typed: (range) => this.take(range ?? this.kept),
+      left: (range) => {
+        this.take(range);
+        this.keep();
+        this.form.dispatchEvent(new CustomEvent("crop"));
+      },
+    });
     this.plays = !REDUCED.matches;
     this.drag = null;
     /** @type {Clip | undefined} */
@@ -64,21 +84,26 @@ export class TimeRange {
     this.block.hidden = this.total < 2;
     for (const last of this.block.querySelectorAll(".last")) last.textContent = this.total - 1;
     for (const total of this.block.querySelectorAll(".total")) total.textContent = this.total;
-    Object.assign(this.fields.first, { max: this.total - 1, value: range?.first ?? "" });
-    Object.assign(this.fields.count, { max: this.total, value: range?.count ?? "" });
+    this.fields.first.dataset.max = this.total - 1;
+    this.fields.count.dataset.max = this.total;
+    for (const part of ["first", "count"]) this.fields[part].value = range?.[part] ?? "";
     this.follow();
   }
 
+  /** The range as it is written, null where it is none; left empty, and of a still method, it goes on to the end. */
   read() {
-    const { first, count } = this.fields;
-    const begin = first.value === "" ? 0 : Math.round(Number(first.value));
-    return { first: begin, count: count.value === "" ? this.total - begin : Math.round(Number(count.value)) };
+    const read = this.group.read((part, { first }) => (part === "first" ? 0 : this.total - first));
+    return read && !this.moving ? { first: read.first, count: this.total - read.first } : read;
   }
 
+  /** Make a range fit: what is too long shrinks, and then begins where it fits. Of one frame the first one counts. */
   fitted({ first, count }) {
-    const least = this.moving ? 2 : 1;
-    const begin = between(first, 0, this.total - least);
-    return { first: begin, count: between(count, least, this.total - begin) };
+    if (!this.moving) {
+      const only = between(first, 0, this.total - 1);
+      return { first: only, count: between(count, 1, this.total - only) };
+    }
+    const long = between(count, 2, this.total);
+    return { first: between(first, 0, this.total - long), count: long };
   }
 
   /** Take what the fields, the method and the sample say. */
@@ -87,8 +112,15 @@ export class TimeRange {
     if (this.clip?.video !== video) this.clip = video && new Clip(video, this.rate, (frame) => this.point(frame));
     if (!video) return;
     const empty = this.fields.first.value === "" && this.fields.count.value === "";
-    this.shown = this.fitted(this.read());
+    this.take(this.fitted(this.read() ?? this.shown ?? { first: 0, count: this.total }));
+    this.kept = this.shown;
     if (empty) this.keep();
+  }
+
+  /** Show a range. */
+  take(range) {
+    this.shown = range;
+    this.block.dataset.first = range.first;
     this.draw();
     this.clip.range = this.shown;
     const visible = this.block.checkVisibility?.() ?? true;
@@ -99,8 +131,8 @@ export class TimeRange {
   }
 
   keep() {
-    this.fields.first.value = this.shown.first;
-    this.fields.count.value = this.shown.count;
+    this.kept = this.shown;
+    this.group.write(this.shown);
   }
 
   name() {
@@ -167,13 +199,6 @@ export class TimeRange {
     this.track.addEventListener("pointermove", (event) => this.pull(event));
     for (const kind of ["pointerup", "pointercancel"]) this.track.addEventListener(kind, (event) => this.letGo(event));
     this.track.addEventListener("keydown", (event) => this.key(event));
-    for (const field of Object.values(this.fields)) {
-      field.addEventListener("input", () => this.follow());
-      field.addEventListener("change", () => {
-        this.keep();
-        this.form.dispatchEvent(new CustomEvent("crop"));
-      });
-    }
     this.form.addEventListener("change", (event) => event.target.name === "method" && this.follow());
     window.addEventListener("pageshow", () => this.follow());
   }

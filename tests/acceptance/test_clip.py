@@ -212,6 +212,48 @@ def test_a_still_method_takes_one_frame(
     expect(page.locator("#time-first")).to_have_value("7")
 
 
+@pytest.mark.parametrize(
+    ("part", "typed", "time", "words"),
+    [
+        ("first", "20", [12, 12], "It begins with frame 12 now: from 20 on, 12 frames do not fit."),
+        ("first", "99", [12, 12], "It begins with frame 12 now"),
+        ("count", "20", [4, 20], "It begins with frame 4 now: from 6 on, 20 frames do not fit."),
+        ("count", "99", [0, 24], "It is 24 frames now: the clip has no more."),
+        ("count", "1", [6, 2], "A video has 2 frames or more."),
+    ],
+)
+def test_a_number_that_does_not_fit_moves_the_range_and_keeps_its_length(
+    visitors: Any, uploaded: str, part: str, typed: str, time: list[int], words: str
+) -> None:
+    """Once its field is left; until then the reel stays where it fitted last."""
+    page = visitors.visit(f"{uploaded}?time=6,12")
+    expect(page.locator("#crop .reel output")).to_contain_text("6–17 of 24")
+    page.locator(f"#time-{part}").click()
+    page.keyboard.press("ControlOrMeta+a")
+    page.keyboard.type(typed)
+    assert page.input_value(f"#time-{part}") == typed
+    page.keyboard.press("Tab")
+    assert time_of(page) == time
+    expect(page.locator("#crop .reel output")).to_contain_text(f"{time[0]}–{sum(time) - 1} of 24")
+    expect(page.locator("#crop [data-fit=time]")).to_contain_text(words)
+
+
+def test_two_numbers_typed_one_after_the_other_are_the_range(visitors: Any, uploaded: str) -> None:
+    """Although the first one does not fit until the second is typed; what is no whole number is named."""
+    page = visitors.visit(uploaded)
+    page.locator("#time-first").click()
+    for number in ("15", "7"):
+        page.keyboard.press("ControlOrMeta+a")
+        page.keyboard.type(number)
+        page.keyboard.press("Tab")
+    assert time_of(page) == [15, 7]
+    page.locator("#time-first").fill("3,5")
+    page.keyboard.press("Tab")
+    expect(page.locator("#time-error")).to_contain_text('got "3,5" for the first frame')
+    expect(page.locator("#time-first")).to_have_value("3,5")
+    expect(page.locator("#crop .reel output")).to_contain_text("15–21 of 24")
+
+
 def test_back_finds_the_time_range(visitors: Any, uploaded: str) -> None:
     page = visitors.visit(uploaded)
     drag(page, 0, 5)
