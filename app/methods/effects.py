@@ -7,6 +7,7 @@ from app.methods.announced import Announced
 from app.methods.model import Method, MovingParams, Size, StillParams
 
 COMMON = frozenset(MovingParams.model_fields)  # whoever runs several methods gives them to each, whether it needs them
+EVERYTHING = "have all of them made (--all on the command line, an experiment over the API)"
 FEW = 4  # names that a sentence lists in full
 
 
@@ -123,7 +124,7 @@ def without_effect(
         if not default and name in idle:
             found[name] = f"{said} would change nothing here: {idle[name]}"
         elif (names if makes else not default) and not set(names) & set(wanted):
-            others = "name one of those as the output, or ask for all, or " if names else ""
+            others = f"name one of those as the output, {EVERYTHING}, or " if names else ""
             found[name] = (
                 f"{said} changes {listed(names) or 'nothing'}, and only {listed(list(wanted))} is asked for: {others}"
                 "leave it out."
