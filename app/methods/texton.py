@@ -257,6 +257,7 @@ EXPLANATION = Explanation(
                     (("rockface_pink", "190,60,96,96"),),
                     {"seed": 1, "cut": 31},
                     ("crop", "noises", "texture"),
+                    "K = 31",
                 ),
             ),
         ),
