@@ -1,8 +1,8 @@
 """What the methods that lay patches of a crop have in common."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,18 +35,39 @@ def reach(default: Reach) -> Any:
     )
 
 
-def summed(reach: Reach, sharpness: float) -> bool:
+class Joining(Protocol):
+    """Parameters of a method that joins patches; those of patchwork have a ``blend`` as well."""
+
+    @property
+    def grid(self) -> int: ...
+
+    @property
+    def sharpness(self) -> float: ...
+
+    @property
+    def reach(self) -> Reach: ...
+
+
+def summed(params: Joining) -> bool:
     """Whether all cells count, and not only those that are near."""
-    return reach == "all" and sharpness < ENDS
+    return params.reach == "all" and not _idle(params)
 
 
-def idle_reach(sizes: Sequence[Size], params: Any) -> dict[str, str]:
-    """Say of the parameter `reach` that it is idle from that sharpness on with which all weights end."""
-    words = f"from a sharpness of {ENDS:g} on only near patches count; take a lower sharpness, or leave it out."
-    return {} if params.sharpness < ENDS else {"reach": words}
+def idle_reach(sizes: Sequence[Size], params: Joining) -> Mapping[str, str]:
+    """Say of the reach that it is idle where far patches are not seen."""
+    words = _idle(params)
+    return {"reach": words} if words else {}
 
 
-def refuse_long_sum(height: int, width: int, grid: int, sharpness: float, *, tileable: bool) -> None:
+def _idle(params: Joining) -> str:
+    if getattr(params, "blend", None) == "sharp":
+        return "a sharp join shows the nearest patch alone; take another join, or leave it out."
+    if params.sharpness >= ENDS:
+        return f"from a sharpness of {ENDS:g} on only near patches count; take a lower sharpness, or leave it out."
+    return ""
+
+
+def refuse_long_sum(params: Joining, height: int, width: int, *, tileable: bool) -> None:
     """Refuse a plane in which too many cells count at each of too many pixels.
 
     Raises
@@ -54,8 +75,8 @@ def refuse_long_sum(height: int, width: int, grid: int, sharpness: float, *, til
     InvalidInputError
         At ``parameters.reach``.
     """
-    products = terms(height, width, grid, sharpness, tileable)
-    if products > MOST_TERMS:
+    products = terms(height, width, params.grid, params.sharpness, tileable)
+    if summed(params) and products > MOST_TERMS:
         raise _too_long(products, f"{width} × {height} pixels", height * width)
 
 
@@ -75,40 +96,35 @@ def _too_long(products: int, counted: str, pixels: int) -> InvalidInputError:
 
 @dataclass(frozen=True)
 class Reached:
-    """What joining patches on a plane takes, at most.
+    """What joining patches on a plane of some height and width takes, at most."""
 
-    Parameters
-    ----------
-    height, width : int
-        Of the plane.
-    grid : int
-    sharpness : float
-    all_cells : bool
-        See `summed`.
-    tileable : bool
-    """
-
+    params: Joining
     height: int
     width: int
-    grid: int
-    sharpness: float
-    all_cells: bool
     tileable: bool
+
+    @property
+    def all_cells(self) -> bool:
+        """See `summed`."""
+        return summed(self.params)
 
     @property
     def edge(self) -> int:
         """Pixels beyond the sample's border that patches may show."""
-        unit = self.grid * (1 + SLACK)
+        unit = self.params.grid * (1 + SLACK)
         if not self.all_cells:
-            return near_reach(unit, self.sharpness, LEFT_OUT)
-        return max(max(span(length, unit, self.sharpness, self.tileable)) for length in (self.height, self.width))
+            return near_reach(unit, self.params.sharpness, LEFT_OUT)
+        return max(
+            max(span(length, unit, self.params.sharpness, self.tileable)) for length in (self.height, self.width)
+        )
 
     @property
     def table_bytes(self) -> int:
         """Bytes of the table of weights."""
         if not self.all_cells:
             return 8 * (2 * self.edge + 1) ** 2
-        return table_bytes(self.height, self.width, self.grid * (1 + SLACK), self.sharpness, self.tileable)
+        unit, sharpness = self.params.grid * (1 + SLACK), self.params.sharpness
+        return table_bytes(self.height, self.width, unit, sharpness, self.tileable)
 
     def sample_bytes(self, size: Size, channels: int) -> int:
         """Bytes of a still sample with what is around it, in single precision."""

@@ -1,6 +1,6 @@
 """`patchwork`: random patches of the crop, joined invisibly."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Literal
 
 import numpy as np
@@ -81,26 +81,14 @@ def check(sizes: Sequence[Size], params: PatchworkParams) -> None:
     size = sizes[0]
     width, height = params.width or size.width, params.height or size.height
     refuse_small(size, params.grid, lambda grid: (least_sample(height, width, grid, params.sharpness),) * 2)
-    if _all_cells(params):
-        refuse_long_sum(height, width, params.grid, params.sharpness, tileable=params.tileable)
-
-
-def _all_cells(params: PatchworkParams) -> bool:
-    return params.blend != "sharp" and summed(params.reach, params.sharpness)
-
-
-def idle(sizes: Sequence[Size], params: PatchworkParams) -> Mapping[str, str]:
-    """How far weights reach where there are none, or where they end anyway."""
-    if params.blend == "sharp":
-        return {"reach": "a sharp cut knows no weights; take other joins, or leave it out."}
-    return idle_reach(sizes, params)
+    refuse_long_sum(params, height, width, tileable=params.tileable)
 
 
 def memory(sizes: Sequence[Size], params: PatchworkParams) -> int:
     """The crop three times over with its margin, the cells, their weights, what is in work, and the file."""
     size = sizes[0]
     width, height = params.width or size.width, params.height or size.height
-    joined = Reached(height, width, params.grid, params.sharpness, _all_cells(params), params.tileable)
+    joined = Reached(params, height, width, params.tileable)
     crop = 8 * size.channels * size.width * size.height + joined.sample_bytes(size, size.channels)
     cells = BYTES_OF_CELL * (height // params.grid + 8) * (width // params.grid + 8) + joined.table_bytes
     return crop + cells + BANDS * BAND * 4 * (size.channels + 6) * (width + TILE) + 2 * size.channels * width * height
@@ -118,8 +106,7 @@ def run(sources: Sequence[Source], params: PatchworkParams, context: Context) ->
         height, width, grid=params.grid, sharpness=params.sharpness, tileable=params.tileable, seed=params.seed
     )
     context.progress("patches", 0.08)
-    if params.blend != "sharp":
-        cells = joined_cells(cells, params.reach, tileable=params.tileable)
+    cells = joined_cells(cells, "all" if summed(params) else "near", tileable=params.tileable)
     made = Patchwork(h, cells, blend=params.blend, seed=params.seed)
     sources_of = made.sources
     with Team(context.threads) as team:
@@ -300,9 +287,9 @@ PATCHWORK = Method(
     references=(REPORT,),
     explanation=EXPLANATION,
     check=check,
+    idle=idle_reach,
     run=run,
     outputs=(texture(), *views("cells", "sources"), *shown_inputs()),
-    idle=idle,
     toroidal=lambda params: params.tileable,
     memory=memory,
 )

@@ -27,7 +27,6 @@ from app.methods.patches import (
     reach,
     refuse_long_sum,
     refuse_small,
-    summed,
 )
 from app.methods.pictures import coordinate_colours, crops, encode, refuse_infinite
 from app.methods.references import PATCHWORK
@@ -81,23 +80,18 @@ def check(sizes: Sequence[Size], params: TransferParams) -> None:
     """Refuse another size than the pattern's, a texture that does not hold the patches, and too long a search."""
     texture, pattern = sizes
     refuse_other_size(pattern, params)
-    refuse_small(
-        texture,
-        params.grid,
-        lambda grid: (least_sample(pattern.height, pattern.width, grid, params.sharpness),) * 2,
-    )
+    height, width = pattern.height, pattern.width
+    refuse_small(texture, params.grid, lambda grid: (least_sample(height, width, grid, params.sharpness),) * 2)
     refuse_long_search(texture, pattern, params.grid, params.candidates)
-    if summed(params.reach, params.sharpness):
-        refuse_long_sum(pattern.height, pattern.width, params.grid, params.sharpness, tileable=False)
+    refuse_long_sum(params, height, width, tileable=False)
 
 
 def memory(sizes: Sequence[Size], params: TransferParams) -> int:
     """Both pictures, the search and the result."""
     texture, pattern = sizes
-    channels = max(texture.channels, pattern.channels)
-    cells = (pattern.width // params.grid + 8) * (pattern.height // params.grid + 8)
-    every = summed(params.reach, params.sharpness)
-    joined = Reached(pattern.height, pattern.width, params.grid, params.sharpness, every, tileable=False)
+    channels, grid = max(texture.channels, pattern.channels), params.grid
+    cells = (pattern.width // grid + 8) * (pattern.height // grid + 8)
+    joined = Reached(params, pattern.height, pattern.width, tileable=False)
     rendered = BYTES_OF_PATTERN * channels * pattern.width * pattern.height
     held = search_bytes(texture, pattern) + joined.sample_bytes(texture, channels) + joined.table_bytes
     return held + rendered + BYTES_OF_CELL * cells
@@ -222,10 +216,7 @@ EXPLANATION = Explanation(
         Figure(
             "In rock, lichen and planks",
             "The same pattern in other textures. Each lends it its own grain, and its own colours.",
-            tuple(
-                Exhibit("transfer", (texture, SCENE), {"seed": 1}, ("crop", "texture"))
-                for texture in (ROCK, LICHEN, PLANKS)
-            ),
+            tuple(Exhibit("transfer", (texture, SCENE), {"seed": 1}) for texture in (ROCK, LICHEN, PLANKS)),
         ),
         Figure(
             "How many candidates",
@@ -262,13 +253,13 @@ EXPLANATION = Explanation(
         ),
         Figure(
             "What is put together",
-            "The pattern with the colours of the leaves, where its patches come from, their averages, and the result.",
+            "The pattern in the leaves' colours, where its patches come from, their averages, and the result.",
             (Exhibit("transfer", (LEAVES, SCENE), {"seed": 1}, ("pattern", "cells", "average", "texture")),),
         ),
         Figure(
             "Nothing to paint with",
             "Rippled sand is lit alike everywhere: the pavilion is a breath of shade.",
-            (Exhibit("transfer", (SAND, SCENE), {"seed": 1}, ("crop", "texture")),),
+            (Exhibit("transfer", (SAND, SCENE), {"seed": 1}),),
         ),
         Figure(
             "Patches that agree too well",
@@ -292,6 +283,7 @@ TRANSFER = Method(
     references=(PATCHWORK,),
     explanation=EXPLANATION,
     check=check,
+    idle=idle_reach,
     run=run,
     outputs=(
         texture(),
@@ -299,7 +291,6 @@ TRANSFER = Method(
         *views("pattern", of=("rescale",)),
         *shown_inputs(2, least=2),
     ),
-    idle=idle_reach,
     size=pattern_size,
     toroidal=lambda params: False,
     most_pixels=WHOLE_IN_MEMORY,

@@ -137,7 +137,7 @@ def patchwork_bytes(size: Size, joined: Reached) -> int:
     r, height, width = joined.edge, joined.height, joined.width
     margins = replace(size, width=size.width + 2 * r, height=size.height + 2 * r)
     average = film_bytes(replace(margins, frames=1))
-    weights = 0 if joined.all_cells else 4 * round((2 * r / joined.grid) ** 2 * height * width)
+    weights = 0 if joined.all_cells else 4 * round((2 * r / joined.params.grid) ** 2 * height * width)
     held = film_bytes(size) + film_bytes(margins) + 16 * average + joined.table_bytes + weights
     return held + frames_bytes(size, height, width)
 

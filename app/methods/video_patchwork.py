@@ -69,7 +69,7 @@ def check(sizes: Sequence[Size], params: VideoPatchworkParams) -> None:
         refuse_small(size, params.grid, lambda grid: (least_sample(height, width, grid, params.sharpness),) * 2)
         most = longest_interval(size.frames, frames, params.loop)
     refuse_short(size, frames, params.interval, most)
-    if summed(params.reach, params.sharpness):
+    if summed(params):
         if params.arrangement == "mosaic":
             work = products((frames, height, width), params.grid, params.interval)
         else:
@@ -81,8 +81,7 @@ def memory(sizes: Sequence[Size], params: VideoPatchworkParams) -> int:
     """The clip, as it came and as planes, the weights of the cells, and some frames."""
     size, (_, height, width) = sizes[0], _shape(sizes[0], params)
     if params.arrangement == "fixed":
-        far = summed(params.reach, params.sharpness)
-        return patchwork_bytes(size, Reached(height, width, params.grid, params.sharpness, far, params.tileable))
+        return patchwork_bytes(size, Reached(params, height, width, params.tileable))
     return 2 * film_bytes(size) + held_bytes(height, width) + frames_bytes(size, height, width)
 
 
@@ -247,9 +246,9 @@ VIDEO_PATCHWORK = Method(
     references=(PATCHWORK,),
     explanation=EXPLANATION,
     check=check,
+    idle=idle_reach,
     run=run,
     outputs=(*FILMS, *views("cells", deep=False), *views("average", of=()), *SHOWN_CLIP),
-    idle=idle_reach,
     toroidal=lambda params: params.tileable,
     memory=memory,
 )

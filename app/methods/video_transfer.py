@@ -80,15 +80,14 @@ def check(sizes: Sequence[Size], params: VideoTransferParams) -> None:
     refuse_small(clip, params.grid, lambda grid: (least_sample(height, width, grid, params.sharpness),) * 2)
     refuse_short(clip, frames, params.interval, longest_interval(clip.frames, frames, params.loop))
     refuse_long_search(clip, pattern, params.grid, params.candidates)
-    if summed(params.reach, params.sharpness):
+    if summed(params):
         refuse_long_frames(terms(height, width, params.grid, params.sharpness, tileable=False), height, width, frames)
 
 
 def memory(sizes: Sequence[Size], params: VideoTransferParams) -> int:
     """That of the video patchwork, and the search."""
     clip, pattern = sizes
-    far = summed(params.reach, params.sharpness)
-    joined = Reached(pattern.height, pattern.width, params.grid, params.sharpness, far, tileable=False)
+    joined = Reached(params, pattern.height, pattern.width, tileable=False)
     return patchwork_bytes(clip, joined) + search_bytes(replace(clip, frames=1), pattern)
 
 
@@ -237,6 +236,7 @@ VIDEO_TRANSFER = Method(
     references=(PATCHWORK,),
     explanation=EXPLANATION,
     check=check,
+    idle=idle_reach,
     run=run,
     outputs=(
         *FILMS,
@@ -246,7 +246,6 @@ VIDEO_TRANSFER = Method(
         *SHOWN_CLIP,
         *views("crop-2", of=()),
     ),
-    idle=idle_reach,
     size=pattern_size,
     toroidal=lambda params: False,
     memory=memory,
