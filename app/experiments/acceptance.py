@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass, replace
 
-from app.errors import BusyError
+from app.errors import BusyError, ConflictError, DeletedError, NotFoundError
 from app.experiments.intake import SampleIntake
 from app.experiments.model import Experiment
-from app.experiments.ownership import new_token, token_digest
+from app.experiments.ownership import derived_identifier, new_identifier, new_token, token_digest
 from app.experiments.ports import Executor, ExperimentStore
 from app.experiments.submission import Allowed, NewExperiment, memory_of, prepare
 from app.settings import Settings
@@ -54,12 +54,30 @@ class Acceptance:
             memory_limit=self._allowed.memory,
         )
 
-    def submit(self, request: NewExperiment, owner_token: str, *, transient: bool = False) -> Experiment:
-        """Accept an experiment: it is on disk and queued when this returns."""
+    def submit(
+        self, request: NewExperiment, owner_token: str, *, transient: bool = False, press: str | None = None
+    ) -> Experiment:
+        """Accept an experiment: it is on disk and queued when this returns. The same press again gives it once more."""
+        owner = token_digest(owner_token)
+        identifier = new_identifier()
+        if press is not None:
+            # The identifier itself says what was pressed: no second process can take it for another experiment.
+            known = derived_identifier(press, owner, repr(request))
+            try:
+                return self._store.get(known)
+            except NotFoundError:
+                identifier = known
+            except DeletedError:
+                pass  # pressed anew since
         if self._executor.waiting >= self._queue_limit:
             raise BusyError("Too many experiments wait already. Try again in a minute.")
-        experiment = replace(self._prepared(request, token_digest(owner_token)), transient=transient)
-        self._store.add(experiment)
+        experiment = replace(self._prepared(request, owner), id=identifier, transient=transient)
+        try:
+            self._store.add(experiment)
+        except ConflictError:
+            if press is None:
+                raise
+            return self._store.get(identifier)  # the other one of two at once was faster
         self._executor.submit(experiment.id)
         return experiment
 

@@ -1,5 +1,6 @@
 """Identifiers and tokens that nobody can guess."""
 
+import base64
 import hashlib
 import hmac
 import secrets
@@ -35,6 +36,30 @@ def token_digest(token: str) -> str:
     '38a3c50b'
     """
     return hashlib.sha256(token.encode(errors="replace")).hexdigest()
+
+
+def derived_identifier(*parts: str) -> str:
+    """An identifier as `new_identifier` gives it, always the same for the same parts, one of which must be a secret.
+
+    Examples
+    --------
+    >>> derived_identifier("secret", "rpn") == derived_identifier("secret", "rpn")
+    True
+    >>> derived_identifier("secret", "rpn") == derived_identifier("secretr", "pn")
+    False
+    """
+    identifier = _derived(IDENTIFIER_BYTES, "identifier", *parts)
+    return f"_{identifier[1:]}" if identifier.startswith("-") else identifier
+
+
+def derived_token(secret: str) -> str:
+    """A token as `new_token` gives it, always the same for the same secret, which it does not tell."""
+    return _derived(TOKEN_BYTES, "token", secret)
+
+
+def _derived(count: int, *parts: str) -> str:
+    digest = hashlib.sha256("".join(f"{len(part)}:{part}" for part in parts).encode(errors="replace")).digest()
+    return base64.urlsafe_b64encode(digest[:count]).decode()
 
 
 def same(one: str, other: str) -> bool:

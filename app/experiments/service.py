@@ -137,8 +137,15 @@ class Service:
 
     # experiments
 
-    def submit(self, request: NewExperiment, owner_token: str) -> Experiment:
+    def submit(self, request: NewExperiment, owner_token: str, press: str | None = None) -> Experiment:
         """Accept an experiment: it is on disk and queued when this returns.
+
+        Parameters
+        ----------
+        request : NewExperiment
+        owner_token : str
+        press : str, optional
+            A secret of one press of a button: what the same owner asks for with the same press is the same experiment.
 
         Raises
         ------
@@ -151,7 +158,7 @@ class Service:
         BusyError
             If too many experiments wait already.
         """
-        return self._acceptance.submit(request, owner_token)
+        return self._acceptance.submit(request, owner_token, press=press)
 
     def check(self, request: NewExperiment) -> Plan:
         """What this experiment would make and take; nothing is kept. Raises as `submit` does, but for `BusyError`."""

@@ -8,12 +8,14 @@ import anyio.to_thread
 from fastapi import Depends, Request
 from starlette.responses import Response
 
+from app.experiments.ownership import derived_token, new_token
 from app.experiments.service import Service
 from app.settings import Settings
 
 OWNER_COOKIE = "microtexture_owner"
 _COOKIE_SECONDS = 400 * 24 * 3600  # browsers keep no cookie for longer
 _TOKEN = re.compile(r"[!-~]{1,512}")
+_PRESS = re.compile(r"[0-9a-f]{48}")
 _Result = TypeVar("_Result")
 
 
@@ -32,6 +34,16 @@ def owner_token(request: Request) -> str | None:
         token = request.cookies.get(OWNER_COOKIE, "")
     token = token.strip()
     return token if _TOKEN.fullmatch(token) else None
+
+
+def pressed(said: str) -> str | None:
+    """Read the key that `static/js/press.js` puts into a form; what is none counts as not said."""
+    return said if _PRESS.fullmatch(said) else None
+
+
+def owner_of_press(token: str | None, press: str | None) -> str:
+    """Give who is asking a token; the same one for a press that comes twice before its answer brings the cookie."""
+    return token or (derived_token(press) if press else new_token())
 
 
 def remember_owner(request: Request, response: Response, token: str) -> None:

@@ -25,10 +25,14 @@ SIZES = {
 
 @dataclass(frozen=True)
 class Draft:
-    """Texts by form name, and messages by the form name they belong to."""
+    """Texts by form name, and messages by the form name they belong to.
+
+    ``lasting`` are those of the messages that a check of the form cannot repeat: they are not about what it says.
+    """
 
     values: dict[str, str]
     errors: dict[str, str] = field(default_factory=dict)
+    lasting: frozenset[str] = frozenset()
 
 
 def opened(sample: Sample, choices: Choices, query: Mapping[str, str]) -> Draft:

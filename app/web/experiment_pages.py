@@ -12,7 +12,6 @@ from starlette.responses import Response
 from app.experiments.catalogue import is_exhibit
 from app.experiments.model import Experiment, Sample, Status
 from app.experiments.outputs import MP4_SUFFIX
-from app.experiments.ownership import new_token
 from app.experiments.service import Service
 from app.experiments.submission import NewExperiment, NewInput
 from app.images.crop import Frames, Rectangle
@@ -21,7 +20,7 @@ from app.methods.fields import fields
 from app.methods.model import Method, MovingParams
 from app.methods.registry import METHODS, method
 from app.web.clips import address, moves
-from app.web.deps import ServiceDep, TokenDep, base_url, remember_owner
+from app.web.deps import ServiceDep, TokenDep, base_url, owner_of_press, pressed, remember_owner
 from app.web.drafts import form_url
 from app.web.forms import SHARED
 from app.web.inputs import most
@@ -250,17 +249,19 @@ def again(
     token: TokenDep,
     name: Annotated[str, Form(alias="method")],
     seed: Annotated[str, Form()] = "",
+    press: Annotated[str, Form()] = "",
 ) -> Response:
     """Run the same crop once more: with a new seed, or by another method at the same phase."""
+    key = pressed(press)
     experiment = service.get(experiment_id)
     known = method(name).params.model_fields
     parameters = {key: value for key, value in experiment.parameters.items() if key in known}
     if seed == "new":
-        parameters["seed"] = secrets.randbelow(SEEDS)
+        parameters["seed"] = (int(key, 16) if key else secrets.randbits(64)) % SEEDS  # a press has one seed
     inputs = tuple(NewInput(source.sample, source.crop, source.frames) for source in experiment.inputs)
-    owner = token or new_token()
+    owner = owner_of_press(token, key)
     listed = experiment.listed or is_exhibit(experiment)
-    run = service.submit(NewExperiment(name, inputs, parameters, listed), owner)
+    run = service.submit(NewExperiment(name, inputs, parameters, listed), owner, key)
     other = name != experiment.method
     response = RedirectResponse(f"/compare/{experiment.id}/{run.id}" if other else f"/experiments/{run.id}", SEE_OTHER)
     remember_owner(request, response, owner)

@@ -1,6 +1,7 @@
 """Home, sample, archive and error pages; they work without JavaScript, the modules in `static/js` make them better."""
 
-from dataclasses import asdict
+from contextlib import suppress
+from dataclasses import asdict, replace
 from urllib.parse import urlencode
 
 from fastapi import APIRouter, Request
@@ -22,6 +23,8 @@ from app.web.deps import (
     TokenDep,
     get_service,
     in_upload_thread,
+    owner_of_press,
+    pressed,
     remember_owner,
 )
 from app.web.drafts import Draft, opened, refused, sent, typed
@@ -129,18 +132,18 @@ def experiments() -> Response:
 @router.post("/experiments")
 async def submit(request: Request, service: ServiceDep, settings: SettingsDep, token: TokenDep) -> Response:
     """Take the form of a sample's page: run it, or show the samples that were chosen in it."""
-    owner = token or new_token()
     names = {f"{prefix(number)}file": f"{prefix(number)}sample" for number in further()}
     if not request.headers.get("content-type", "").startswith("multipart/form-data"):
-        return await run_in_threadpool(_submit, request, service, settings, owner, await _texts(request), {})
+        return await run_in_threadpool(_submit, request, service, settings, token, await _texts(request), {})
     async with receive_form(request, tuple(names)) as form:
         values, errors = dict(form.fields), {}
+        owner = owner_of_press(token, pressed(values.get("press", "")))
         for name, path in form.files.items():
             try:
                 values[names[name]] = (await in_upload_thread(request, service.add_sample, path, owner)).id
             except AppError as error:
                 errors[names[name]] = error.message
-        return await run_in_threadpool(_submit, request, service, settings, owner, values, errors)
+        return await run_in_threadpool(_submit, request, service, settings, token or owner, values, errors)
 
 
 async def _texts(request: Request) -> dict[str, str]:
@@ -168,24 +171,29 @@ def _submit(
     request: Request,
     service: Service,
     settings: Settings,
-    owner: str,
+    token: str | None,
     values: dict[str, str],
     errors: dict[str, str],
 ) -> Response:
     sample = service.sample(values.get("sample", ""))
     choices = _choices(service, settings)
     if errors:
-        return _sample(request, settings, sample, choices, Draft(values, errors), 422)
+        return _sample(request, settings, sample, choices, Draft(values, errors, frozenset(errors)), 422)
     if values.get("show"):
         query = urlencode(typed(values), safe=",:@")
         return RedirectResponse(f"/samples/{sample.id}?{query}", SEE_OTHER)
     read = sent(sample, choices, values, listed=not values.get("unlisted"))
     if read.request is None:
         return _sample(request, settings, sample, choices, read.draft, 422)
+    press = pressed(values.get("press", ""))
+    owner = owner_of_press(token, press)
     try:
-        experiment = service.submit(read.request, owner)
+        experiment = service.submit(read.request, owner, press)
     except AppError as error:
         draft = refused(read, method(read.request.method), error)
+        with suppress(AppError):
+            service.check(read.request)
+            draft = replace(draft, lasting=frozenset(draft.errors))
         return _sample(request, settings, sample, choices, draft, status_of(error))
     response = RedirectResponse(f"/experiments/{experiment.id}", SEE_OTHER)
     remember_owner(request, response, owner)

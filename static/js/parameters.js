@@ -100,16 +100,11 @@ reroll.addEventListener("click", () => {
   followCrop();
 });
 
-// One press, one experiment; whoever comes back may press again.
-let sent = false;
-form.addEventListener("submit", (event) => {
-  if (sent) event.preventDefault();
-  sent = true;
+form.addEventListener("submit", () => {
   clearTimeout(pending);
   keepInAddress();
 });
 window.addEventListener("pageshow", () => {
-  sent = false;
   before = chosen();
 });
 followCrop();

@@ -3,6 +3,7 @@
 import base64
 import json
 import os
+import re
 import socket
 import subprocess
 import sys
@@ -46,14 +47,26 @@ class Site:
         self, sample: str, crop: tuple[int, int, int, int], method: str = "rpn", *others: str, **parameters: Any
     ) -> dict[str, Any]:
         """Run an experiment to its end; its record. Further samples have the first one's crop."""
+        return self.submit(sample, crop, method, *others, wait=True, **parameters)
+
+    def submit(
+        self,
+        sample: str,
+        crop: tuple[int, int, int, int],
+        method: str,
+        *others: str,
+        wait: bool = False,
+        **parameters: Any,
+    ) -> dict[str, Any]:
+        """Submit an experiment; its record."""
         rectangle = dict(zip(("x", "y", "width", "height"), crop, strict=True))
         inputs = [{"sample": name, "crop": rectangle} for name in (sample, *others)]
         answer = self.client.post(
             "/api/v1/experiments",
             json={"method": method, "inputs": inputs, "parameters": parameters},
-            headers={"Prefer": "wait=30"},
+            headers={"Prefer": "wait=30"} if wait else {},
         )
-        assert answer.status_code == 201, answer.text
+        assert answer.status_code == (201 if wait else 202), answer.text
         return dict(answer.json())
 
 
@@ -65,12 +78,13 @@ def _responds(client: httpx.Client, path: str) -> httpx.Response | None:
     return answer if answer.status_code == 200 else None
 
 
-@pytest.fixture(scope="session")
-def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
-    directory = tmp_path_factory.mktemp("acceptance")
+@contextmanager
+def serving(directory: Path, **settings: str) -> Iterator[Site]:
+    """Serve the application in a process of its own, with its bundled samples, until the block ends."""
     with socket.create_server(("127.0.0.1", 0)) as reserved:
         port = reserved.getsockname()[1]
-    environment = {**os.environ, "MICROTEXTURE_DATA_DIR": str(directory / "data"), "MICROTEXTURE_WORKERS": str(WORKERS)}
+    chosen = {"DATA_DIR": str(directory / "data"), "WORKERS": str(WORKERS)} | settings
+    environment = os.environ | {f"MICROTEXTURE_{name}": value for name, value in chosen.items()}
     command = [str(Path(sys.executable).parent / "microtexture"), "serve", "--port", str(port)]
     log = (directory / "server.log").open("w")
     process = subprocess.Popen(command, cwd=ROOT, env=environment, stdout=log, stderr=subprocess.STDOUT)
@@ -85,6 +99,23 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
         process.terminate()
         process.wait(PATIENCE)
         log.close()
+
+
+@pytest.fixture(scope="session")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
+    with serving(tmp_path_factory.mktemp("acceptance")) as served:
+        yield served
+
+
+@pytest.fixture(scope="session")
+def full_site(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Site]:
+    """A server whose queue is full: one long experiment runs, and as many wait as may."""
+    with serving(tmp_path_factory.mktemp("full"), WORKERS="1", QUEUE_LIMIT="1") as served:
+        for status in ("running", "queued"):
+            record = served.submit("gravel_gray", (96, 96, 72, 72), "efros-leung", width=1024, height=1024)
+            address = f"/api/v1/experiments/{record['id']}"
+            until(lambda a=address, s=status: served.client.get(a).json()["status"] == s, f"one that is {status}")
+        yield served
 
 
 @pytest.fixture(scope="session")
@@ -111,6 +142,38 @@ def busy(site: Site) -> Callable[[], AbstractContextManager[None]]:
                 site.client.delete(f"/api/v1/experiments/{answer.json()['id']}")
 
     return busy
+
+
+@pytest.fixture(scope="session")
+def pages(site: Site, experiment: dict[str, Any]) -> dict[str, str]:
+    """Name → address of every kind of page."""
+    other = site.run("sand_desert009", (256, 256, 256, 192), method="adsn", width=384, height=288, seed=7)
+    site.run("gravel_gray", (96, 96, 256, 256))
+    mixture = site.run("gravel_gray", (96, 96, 192, 192), "mix", "towel_red", "rockface_pink", seed=2)
+    convergence = site.run("gravel_gray", (96, 96, 128, 128), "dsn", convergence=True, spot="disc")
+    films = site.run("sand_under_water", (40, 40, 96, 96), "video-rpn", frames=8)
+    return {
+        "home": "/",
+        "sample": "/samples/scene_china",
+        "several-samples": "/samples/gravel_gray?method=mix&third=towel_red",
+        "clip": "/samples/sky_pan?method=video-patchwork&time=12,48",
+        "clip-frame": "/samples/sky_pan?method=rpn&time=12,1",
+        "clip-lacking": "/samples/gravel_gray?method=video-patchwork",
+        "mixture": f"/experiments/{mixture['id']}",
+        "convergence": f"/experiments/{convergence['id']}",
+        "experiment": f"/experiments/{experiment['id']}",
+        "flip": f"/experiments/{experiment['id']}?view=flip",
+        "slider": f"/experiments/{experiment['id']}?view=slider",
+        "tiled": f"/experiments/{experiment['id']}?view=tiled&tiles=3",
+        "steps": f"/experiments/{experiment['id']}?view=steps",
+        "compare": f"/compare/{experiment['id']}/{other['id']}",
+        "films": f"/experiments/{films['id']}",
+        "films-tiled": f"/experiments/{films['id']}?view=tiled",
+        "methods": "/methods",
+        "method-of-films": "/methods/video-rpn",
+        "archive": "/archive",
+        "nothing": "/nothing-here",
+    }
 
 
 @pytest.fixture(scope="session")
@@ -149,7 +212,7 @@ class Visitors:
         return page
 
     def _note(self, kind: str, text: str) -> None:
-        refusal = text.startswith("Failed to load resource: the server responded with a status of 4")
+        refusal = re.match("Failed to load resource: the server responded with a status of (4|503)", text)
         if kind in {"error", "warning"} and not (refusal and self.refusals_expected):
             self.complaints.append(text)
 

@@ -21,38 +21,6 @@ ALIKE = {
 PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True}
 
 
-@pytest.fixture(scope="session")
-def pages(site: Any, experiment: dict[str, Any]) -> dict[str, str]:
-    """Name → address of every kind of page."""
-    other = site.run("sand_desert009", (256, 256, 256, 192), method="adsn", width=384, height=288, seed=7)
-    site.run("gravel_gray", (96, 96, 256, 256))
-    mixture = site.run("gravel_gray", (96, 96, 192, 192), "mix", "towel_red", "rockface_pink", seed=2)
-    convergence = site.run("gravel_gray", (96, 96, 128, 128), "dsn", convergence=True, spot="disc")
-    films = site.run("sand_under_water", (40, 40, 96, 96), "video-rpn", frames=8)
-    return {
-        "home": "/",
-        "sample": "/samples/scene_china",
-        "several-samples": "/samples/gravel_gray?method=mix&third=towel_red",
-        "clip": "/samples/sky_pan?method=video-patchwork&time=12,48",
-        "clip-frame": "/samples/sky_pan?method=rpn&time=12,1",
-        "clip-lacking": "/samples/gravel_gray?method=video-patchwork",
-        "mixture": f"/experiments/{mixture['id']}",
-        "convergence": f"/experiments/{convergence['id']}",
-        "experiment": f"/experiments/{experiment['id']}",
-        "flip": f"/experiments/{experiment['id']}?view=flip",
-        "slider": f"/experiments/{experiment['id']}?view=slider",
-        "tiled": f"/experiments/{experiment['id']}?view=tiled&tiles=3",
-        "steps": f"/experiments/{experiment['id']}?view=steps",
-        "compare": f"/compare/{experiment['id']}/{other['id']}",
-        "films": f"/experiments/{films['id']}",
-        "films-tiled": f"/experiments/{films['id']}?view=tiled",
-        "methods": "/methods",
-        "method-of-films": "/methods/video-rpn",
-        "archive": "/archive",
-        "nothing": "/nothing-here",
-    }
-
-
 def settle(page: Page) -> None:
     """Wait until the pictures that are in sight are there."""
     page.wait_for_function("() => [...document.images].every(image => image.loading === 'lazy' || image.complete)")
