@@ -57,8 +57,10 @@ BOUNDS = """async (selector, scroll) => {
 }"""
 
 # The pixels of an <img>, <video> or <canvas>, whatever its size on the screen.
-DECODED = """(selector) => {
+DECODED = """async (selector) => {
     const shown = document.querySelector(selector);
+    if (shown?.complete === false) return null;
+    await shown?.decode?.();
     const width = shown?.naturalWidth ?? shown?.videoWidth ?? shown?.width;
     if (!width || (shown.readyState ?? 4) < 2) return null; // 2: a video has its picture
     const canvas = document.createElement("canvas");
