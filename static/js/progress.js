@@ -40,7 +40,8 @@ export function follow(card, finished) {
       clearInterval(clock);
       find("status").textContent = "Finished";
       find("stage").textContent = "Loading the result …";
-      find("cancel")?.remove();
+      bar.hidden = true;
+      find("cancel")?.form.remove();
       announce(`The experiment ${ENDS.get(state.status)}. Loading the result …`);
       start(finished);
       return;

@@ -7,7 +7,7 @@ from typing import Any
 import av
 import numpy as np
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Route, expect
 
 from app.methods.registry import METHODS
 
@@ -332,3 +332,27 @@ def test_a_clip_on_a_phone(visitors: Any, uploaded: str, screenshot: Callable[..
         touch.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
     assert time_of(page) == [12, 12]
     screenshot(page, "sample-clip-phone")
+
+
+def test_a_video_that_was_quicker_than_the_script_lies_under_its_crop_all_the_same(
+    visitors: Any, uploaded: str
+) -> None:
+    """What was added to an odd side lies outside the frame, whichever of the two comes first."""
+    page = visitors.visit("/")
+    held: list[Route] = []
+
+    def hold(route: Route) -> None:
+        held.append(route)
+
+    page.route("**/js/clip.js", hold)
+    page.goto(uploaded, wait_until="commit")
+    page.wait_for_function("() => document.querySelector('#frame video')?.readyState > 0")
+    page.unroute("**/js/clip.js", hold)
+    for route in held:
+        route.fallback()
+    expect(page.locator("#frame.ready")).to_be_visible()
+    video, frame = page.locator("#frame video"), page.locator("#frame")
+    coded = video.evaluate("video => video.videoWidth")
+    assert coded == WIDTH + 1
+    sides = [each.evaluate("element => element.getBoundingClientRect().width") for each in (video, frame)]
+    assert sides[0] / sides[1] == pytest.approx(coded / WIDTH, abs=1e-4)

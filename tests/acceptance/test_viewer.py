@@ -11,7 +11,7 @@ from playwright.sync_api import Page, expect
 TEXTURE = ".pane:nth-child(2) img"
 STAGE = ".pane:not([hidden]) .stage"
 PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True}
-HINT = "Ctrl + wheel zooms"
+HINT = "To zoom: Ctrl + wheel"
 
 
 def opened(visitors: Any, experiment: dict[str, Any], query: str = "", **options: Any) -> Page:
