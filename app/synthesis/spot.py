@@ -118,8 +118,10 @@ class Spot:
 
 def variances(planes: Real, area: int) -> NDArray[np.float64]:
     """Variance of every channel of planes (C, M, N) that lie in an image of ``area`` pixels, 0 around them; (C,)."""
-    squares = np.einsum("cyx,cyx->c", planes, planes, dtype=np.float64)
-    found: NDArray[np.float64] = squares / area - (planes.sum(axis=(1, 2), dtype=np.float64) / area) ** 2
+    # A row is short enough for single precision; all of them are not.
+    squares = np.einsum("cyx,cyx->cy", planes, planes).sum(axis=1, dtype=np.float64)
+    sums = planes.sum(axis=2).sum(axis=1, dtype=np.float64)
+    found: NDArray[np.float64] = squares / area - (sums / area) ** 2
     return found
 
 
