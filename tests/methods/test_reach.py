@@ -10,6 +10,7 @@ from imagecodecs import png_decode
 from app.errors import InvalidInputError
 from app.images.video.reader import read_film
 from app.methods.model import Method, Picture, Size
+from app.methods.patches import summed
 from app.methods.patchwork import PATCHWORK
 from app.methods.registry import METHODS
 from app.methods.transfer import TRANSFER
@@ -132,3 +133,16 @@ def test_pictures_of_one_pixel_and_clips_of_few_frames_can_be_summed(tmp_path):
         )
     )
     assert len(list(read_film(film.data))) == 3
+
+
+@pytest.mark.parametrize("method", JOINING, ids=lambda method: method.name)
+def test_a_reach_that_changes_nothing_is_idle_and_sums_nothing(method):
+    """From a sharpness of 6 on, and beside sharp joins; below it counts."""
+    sizes = [source.size for source in sources_for(method)]
+    assert not method.idle(sizes, method.params(sharpness=5.9))
+    cases = [{"sharpness": 6}, *([{"sharpness": 2, "blend": "sharp"}] if method is PATCHWORK else [])]
+    for parameters in cases:
+        params = method.params(**parameters, reach="all")
+        assert list(method.idle(sizes, params)) == ["reach"]
+        assert not summed(params)
+    assert summed(method.params(sharpness=5.9, reach="all"))
