@@ -17,6 +17,7 @@ from app.methods.references import PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
 from app.methods.references import TEXTON as TEXTON_ARTICLE
 from app.numbers import FAR
 from app.synthesis.cut_texton import cut_texton, lag_error
+from app.synthesis.elementary import log10
 from app.synthesis.spot import Spot, centre
 from app.synthesis.texton import extend_texton, radii, texton, texton_noise
 
@@ -140,7 +141,7 @@ def _logarithmic(t: Real) -> Real:
     """The modulus over all channels, its greatest value as white, three powers of ten below it or less as black."""
     power = np.einsum("yxc,yxc->yx", t, t)
     power /= max(float(power.max()), np.finfo(np.float32).tiny)
-    decades: Real = np.log10(np.maximum(power, np.float32(10 ** (-2 * DECADES)))) / 2
+    decades: Real = np.asarray(log10(np.maximum(power, np.float32(10 ** (-2 * DECADES)))) / 2)
     return 1 + decades / np.float32(DECADES)
 
 

@@ -13,6 +13,8 @@ from math import ceil, hypot
 import numpy as np
 from numpy.typing import NDArray
 
+from app.synthesis.elementary import power
+
 REACH = 3.0  # spacings after which a weight is 0
 JITTER = 0.75  # of its square's side, in which a centre lies
 LATTICE = 13  # points along a spacing, or all of its pixels where there are fewer
@@ -119,9 +121,7 @@ def thresholds(
     norm = np.sqrt(norm)  # times (1 − shoulder)
     found = []
     for share in shares:
-        ratio: Real = (
-            np.ones_like(norm) if share == 1 else (shoulder + np.float32(share) * norm) ** np.float32(-1 / sharpness)
-        )
+        ratio: Real = np.ones_like(norm) if share == 1 else power(shoulder + np.float32(share) * norm, -1 / sharpness)
         reached = np.sqrt(nearest) * ratio + np.float32(off + EPSILON) * (1 + ratio)
         found.append(np.square(reached, out=reached))
     return found

@@ -11,10 +11,13 @@ References
 Oppenheim, Lim, "The Importance of Phase in Signals", Proceedings of the IEEE, 1981.
 """
 
+import math
+
 import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
+from app.synthesis.elementary import angle
 from app.synthesis.field import Progress
 
 ROUNDING = 1e-6  # of an image's ℓ² norm: what coefficients of single precision may be off by
@@ -67,7 +70,8 @@ def swap(first: Real, second: Real, threads: int = 1, progress: Progress | None 
         planes = first[:, :, channel], second[:, :, channel]
         a, b = (scipy.fft.rfft2(plane, workers=threads) for plane in planes)
         report("swap", (channel + 0.4) / channels)
-        spectra = _swapped(a, b, *(ROUNDING * float(np.linalg.norm(plane)) for plane in planes))
+        floors = (ROUNDING * math.sqrt(np.einsum("yx,yx->", plane, plane)) for plane in planes)
+        spectra = _swapped(a, b, *floors)
         report("swap", (channel + 0.6) / channels)
         for image, spectrum in zip(made, spectra, strict=True):
             image[channel] = scipy.fft.irfft2(spectrum, s=(height, width), overwrite_x=True, workers=threads)
@@ -132,7 +136,7 @@ def centred_phase(image: Real, threads: int = 1) -> Real:
     """
     grey = image if image.ndim == 2 else image.mean(axis=2)
     height, width = grey.shape
-    half = np.angle(scipy.fft.rfft2(grey, workers=threads))
+    half = angle(scipy.fft.rfft2(grey, workers=threads))
     rows = -np.arange(height) % height
     left = -half[rows, width // 2 : 0 : -1]  # frequencies −(W // 2) … −1
     whole = np.concatenate([left, half[:, : (width + 1) // 2]], axis=1)

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
+from app.synthesis.elementary import exp
 from app.synthesis.team import Team
 
 Real = NDArray[np.float32]
@@ -54,7 +55,7 @@ def gaussian_window(half_patch: int) -> Double:
     ((9, 9), 57.14, 1.0)
     """
     side = 2 * half_patch + 1
-    profile = np.exp(-0.5 * (np.arange(-half_patch, half_patch + 1) * 6.4 / side) ** 2)
+    profile = exp(-0.5 * (np.arange(-half_patch, half_patch + 1) * 6.4 / side) ** 2)
     profile /= profile.sum()
     window: Double = np.outer(profile, profile)
     return window
@@ -206,7 +207,7 @@ def _equal_rows(rows: Real) -> tuple[Index, Index]:
     """The class of every row, numbered by first occurrence, and the first row of every class."""
     packed = np.ascontiguousarray(rows).view(np.dtype((np.void, rows.shape[1] * rows.itemsize)))[:, 0]
     _, first, inverse = np.unique(packed, return_index=True, return_inverse=True)
-    order = np.argsort(first)
+    order = np.argsort(first, kind="stable")
     rank = np.empty_like(order)
     rank[order] = np.arange(len(order))
     return rank[inverse], first[order]

@@ -46,7 +46,8 @@ class SmoothSpectrum:
     """ŝ of an image (H, W, C), one block of columns of the half spectrum at a time.
 
     v̂ is a sum of two products of a function of k₁ and one of k₂: as real and imaginary parts, a matrix product of
-    inner dimension 4.
+    inner dimension 4. In double precision its products are exact and only its sums are rounded, so that it has the same
+    bits from every kernel of BLAS, with fused operations or without.
     """
 
     def __init__(self, h: Real) -> None:
@@ -63,7 +64,7 @@ class SmoothSpectrum:
         right[:, 0] = scipy.fft.rfft(h[0].T - h[-1].T)
         right[:, 2] = across
         right[:, 1::2] = 1j * right[:, ::2]
-        self._left, self._right = left.view(np.float32), right.view(np.float32)
+        self._left, self._right = (factor.view(np.float32).astype(np.float64) for factor in (left, right))
 
     def block(self, first: int, last: int) -> Iterator[Complex]:
         """Columns ``first`` to ``last`` − 1 of ŝ, shape (H, last − first), channel by channel."""
@@ -76,7 +77,7 @@ class SmoothSpectrum:
         for left, right in zip(self._left, self._right, strict=True):
             smooth = np.empty_like(inverse)
             for y in range(0, self._height, step):
-                np.matmul(left[y : y + step], right[:, columns], out=smooth[y : y + step])
+                smooth[y : y + step] = left[y : y + step] @ right[:, columns]
             smooth *= inverse
             yield smooth.view(np.complex64)
 

@@ -32,6 +32,8 @@ import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
+from app.synthesis.elementary import log2
+
 Complex = NDArray[np.complex64]
 Real = NDArray[np.float32]
 
@@ -151,7 +153,7 @@ class SteerablePyramid:
         order = self.orientations - 1
         kappa = 2 ** (2 * order) * math.factorial(order) ** 2 / (self.orientations * math.factorial(2 * order))
         t = _log_radius(*self._axes(scale))
-        window: Real = np.exp2(-order * np.maximum(t, -1))
+        window: Real = np.exp(np.maximum(t, -1) * np.float32(-order * math.log(2)))
         window *= math.sqrt(kappa)
         window *= _cosine(t)
         return window
@@ -183,8 +185,7 @@ class Total:
 
 def _log_radius(y: Real, x: Real) -> Real:
     """log₂ of the distance from the origin, where it is −∞."""
-    with np.errstate(divide="ignore"):
-        return np.asarray(np.log2(y[:, None] ** 2 + x**2) / 2)
+    return np.asarray(log2(y[:, None] ** 2 + x**2) / 2)
 
 
 def _cosine(t: Real) -> Real:

@@ -13,6 +13,8 @@ from numpy.random import SFC64, SeedSequence
 from numpy.typing import NDArray
 from scipy.special import erfcinv
 
+from app.synthesis.elementary import log, log1p, log10
+
 STATES = 1 << 16  # values that a 16-bit word takes, and so phases that are drawn from
 COLUMNS = 32  # width of a block of columns; part of what a seed means, since every block has its own stream
 
@@ -31,9 +33,10 @@ def phase_table() -> Complex:
 @cache
 def _rayleigh_table() -> Real:
     """Rayleigh moduli: R² = −ln U, averaged over each of the 65536 intervals of U, so that E R² = 1 exactly."""
-    edges = np.arange(STATES + 1) / STATES
-    primitive = edges - edges * np.log(np.maximum(edges, 1e-300))  # of −ln u
-    table: Real = np.sqrt(np.diff(primitive) * STATES).astype(np.float32)
+    square = 1 - log(np.arange(1, STATES + 1) / STATES)
+    below = np.arange(1, STATES)
+    square[1:] -= below * log1p(1 / below)  # −ln u has a primitive, but its differences would hang on the last bits
+    table: Real = np.sqrt(square).astype(np.float32)
     return table
 
 
@@ -167,6 +170,6 @@ class LogModulus:
         whole = np.minimum(np.concatenate([left, right], axis=1), greatest) / greatest
         if first <= height // 2 < last:
             whole[height // 2 - first, width // 2] = 1
-        decades = np.log10(np.maximum(whole, 10 ** (-2 * DECADES))) / 2
+        decades = log10(np.maximum(whole, np.float32(10 ** (-2 * DECADES)))) / 2
         grey: NDArray[np.uint8] = (255.5 + 255 / DECADES * decades).clip(0, 255).astype(np.uint8)
         return grey

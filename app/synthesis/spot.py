@@ -25,6 +25,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from app.synthesis.elementary import exp
+
 Real = NDArray[np.float32]
 Profile = Literal["bump", "gaussian"]
 
@@ -64,12 +66,12 @@ def window(n: int, alpha: float, profile: Profile = "bump") -> NDArray[np.float6
         phi = np.ones(n)
     elif profile == "bump":
         u = np.linspace(-1, 1, 4097)
-        bump = np.exp(-1 / np.maximum(1 - u**2, 1e-3))
+        bump = exp(-1 / np.maximum(1 - u**2, 1e-3))
         bump[[0, -1]] = 0
         primitive = np.concatenate([[0], np.cumsum(bump[1:] + bump[:-1])])
         phi = np.interp(2 * t / alpha - 1, u, primitive / primitive[-1])
     else:
-        phi = np.exp(-8 * np.maximum(1 - t / alpha, 0) ** 2)
+        phi = exp(-8 * np.maximum(1 - t / alpha, 0) ** 2)
     phi /= np.sqrt((phi**2).mean())
     phi.flags.writeable = False
     return phi

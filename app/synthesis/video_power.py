@@ -47,4 +47,4 @@ class FilmPower:
         twice[0] = 1
         if self._width % 2 == 0:
             twice[-1] = 1
-        return float((power @ twice).sum())
+        return float((power * twice).sum())
