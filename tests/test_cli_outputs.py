@@ -63,6 +63,7 @@ def test_all_outputs_come_with_a_record_of_how_they_were_made(tmp_path: Path) ->
     assert [each["file"] for each in record["inputs"]] == [str(SAND), str(CHINA)]
     assert len(record["diagnostics"]["structure"]["outputs"]) == 4
     assert record["depth"] == 8
+    assert record["environment"].keys() == {"version", "cpu", "numpy", "scipy"}
 
 
 def test_facts_are_in_the_record(tmp_path: Path) -> None:

@@ -10,8 +10,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from app import __version__
 from app.errors import InvalidInputError, NotFoundError
+from app.experiments.environment import environment
 from app.experiments.model import Experiment
 from app.experiments.outputs import AnyFormat, file_of
 from app.images.convert import convert
@@ -127,7 +127,7 @@ def write_record(
 ) -> None:
     """Write down how the files of a directory were made, in the words of the service's records."""
     record = {
-        "version": __version__,
+        "environment": environment(),
         "method": experiment.method,
         "inputs": [
             {"file": each.sample, "crop": asdict(each.crop), "frames": asdict(each.frames)}

@@ -102,9 +102,10 @@ class Experiment:
     """One run: method, inputs and parameters (complete: defaults and sizes filled in), and what came of it.
 
     ``owner`` is the SHA-256 (hex) of the owner's token. ``timings`` are seconds by stage, in order. ``diagnostics``
-    is what was measured of it (see `app.experiments.diagnostics`). ``depth`` is the bits per channel of its pictures:
-    that of its deepest sample. A ``transient`` one is made for a single answer: only the output that is ``wanted`` is
-    kept, and it goes with the answer.
+    is what was measured of it (see `app.experiments.diagnostics`), ``environment`` where it was computed (see
+    `app.experiments.environment`; empty in what earlier versions made). ``depth`` is the bits per channel of its
+    pictures: that of its deepest sample. A ``transient`` one is made for a single answer: only the output that is
+    ``wanted`` is kept, and it goes with the answer.
     """
 
     id: str
@@ -119,6 +120,7 @@ class Experiment:
     outputs: tuple[Output, ...] = ()
     timings: Mapping[str, float] = field(default_factory=dict)
     diagnostics: Mapping[str, Any] = field(default_factory=dict)
+    environment: Mapping[str, str] = field(default_factory=dict)
     error: str | None = None
     started_at: datetime | None = None
     finished_at: datetime | None = None

@@ -50,6 +50,7 @@ class ExperimentStore(Protocol):
         outputs: Sequence[Output],
         timings: Mapping[str, float],
         diagnostics: Mapping[str, Any],
+        environment: Mapping[str, str],
     ) -> bool:
         """Record outputs and success in one transaction; nothing and False if it is no longer running."""
         ...

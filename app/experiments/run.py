@@ -12,6 +12,7 @@ import numpy as np
 
 from app.errors import AppError, CancelledError, DeletedError, NotFoundError
 from app.experiments.diagnostics import diagnose
+from app.experiments.environment import environment
 from app.experiments.model import Experiment, Output, Status
 from app.experiments.ports import BlobStore, ExperimentStore
 from app.images.read import read_crop
@@ -122,7 +123,7 @@ def _compute(
         stages("writing", 1.0)
         with blobs.lease():
             outputs = [_kept(blobs, picture, path) for picture, path in staged]
-            store.succeed(experiment.id, outputs, stages.seconds(), diagnostics)
+            store.succeed(experiment.id, outputs, stages.seconds(), diagnostics, environment())
 
 
 def _add_deep(

@@ -31,6 +31,7 @@ def row_of_experiment(experiment: Experiment) -> dict[str, Any]:
     row["parameters"] = dict(experiment.parameters)
     row["timings"] = dict(experiment.timings)
     row["diagnostics"] = dict(experiment.diagnostics)
+    row["environment"] = dict(experiment.environment)
     return row
 
 

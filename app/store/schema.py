@@ -62,6 +62,7 @@ experiments = sa.Table(
     sa.Column("attempts", sa.Integer, nullable=False),
     sa.Column("timings", sa.JSON, nullable=False),
     sa.Column("diagnostics", sa.JSON, nullable=False, server_default=sa.text("'{}'")),
+    sa.Column("environment", sa.JSON, nullable=False, server_default=sa.text("'{}'")),
     sa.Column("error", sa.Text),
     sa.Column("started_at", Moment),
     sa.Column("finished_at", Moment, index=True),

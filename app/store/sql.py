@@ -156,6 +156,7 @@ class SqlStore:
         outputs_: Sequence[Output],
         timings: Mapping[str, float],
         diagnostics: Mapping[str, Any],
+        environment: Mapping[str, str],
     ) -> bool:
         with writing(self._engine) as connection:
             changed = connection.execute(
@@ -165,6 +166,7 @@ class SqlStore:
                     status=Status.SUCCEEDED,
                     timings=dict(timings),
                     diagnostics=dict(diagnostics),
+                    environment=dict(environment),
                     finished_at=_now(),
                 )
             ).rowcount

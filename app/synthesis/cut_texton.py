@@ -227,8 +227,9 @@ def _root(spectra: Complex, size: Sequence[int], cut: int, threads: int, progres
         averaged[:, :, b, a] = averaged[:, :, a, b].conj()
     for row, matrices in enumerate(averaged):
         _say(progress, 0.5 + 0.4 * row / len(averaged))
-        values, axes = np.linalg.eigh(matrices)
-        np.matmul(axes * np.sqrt(np.maximum(values, 0))[:, None, :], axes.conj().swapaxes(1, 2), out=matrices)
+        # In double precision, and rounded after: other processors' LAPACK rounds otherwise.
+        values, axes = np.linalg.eigh(matrices.astype(np.complex128))
+        matrices[:] = (axes * np.sqrt(np.maximum(values, 0))[:, None, :]) @ axes.conj().swapaxes(1, 2)
     for a, b in np.ndindex(count, count):
         _say(progress, 0.9 + 0.1 * (a * count + b) / count**2)
         kernel[a, b] = scipy.fft.irfft2(averaged[:, :, a, b], s=grid, workers=threads)[_square(grid, cut)]

@@ -28,6 +28,9 @@ PLAIN_CODECS = "MICROTEXTURE_TEST_PLAIN_CODECS"
 # x264's plain C takes other decisions than its code for SSSE3, without which numpy does not start.
 SSSE3 = "asm=mmx2,sse,sse2,sse2fast,sse3,ssse3"
 
+# Numbers that lead through other code.
+ALSO = {"texton": {"cut": 15}, "patchwork": {"sharpness": 2}, "heeger-bergen": {"scales": 3, "orientations": 3}}
+
 
 def use_plain_codecs() -> None:
     """Have FFmpeg and its scaler run plain C, and x264 no more than any processor has that numpy runs on."""
@@ -44,6 +47,8 @@ def cases(method: Method) -> Iterator[tuple[str, dict[str, Any], dict[str, Any]]
     yield "as it comes", {}, {}
     yield "grey", {"channels": 1}, {}
     yield "larger", {}, {"width": 80, "height": 56} | ({"frames": 14} if moving else {})
+    if method.name in ALSO:
+        yield "otherwise", {}, ALSO[method.name]
     for name, field in method.params.model_fields.items():
         options = [option for option in (field.annotation, *get_args(field.annotation)) if option is not NoneType]
         for option in options:

@@ -11,6 +11,7 @@ from app.store.sql import SqlStore
 START = datetime(2026, 3, 1, 12, 0, 0, 123456, tzinfo=UTC)
 NUMBERS = count()
 MEASURED = {"structure": {"inputs": [0.01], "outputs": [-0.002]}, "facts": [{"name": "radius", "value": 3.5}]}
+COMPUTED = {"version": "1", "cpu": "a processor (X86_V3)", "numpy": "2", "scipy": "1"}
 
 
 def a_sample(**values: object) -> Sample:
@@ -36,5 +37,5 @@ def succeeded(store: SqlStore, sample: Sample, **values: object) -> Experiment:
     store.add(experiment)
     store.start(experiment.id)
     made = [an_output(kind="texture"), an_output("crop"), an_output(".thumbnail-crop")]
-    store.succeed(experiment.id, made, {"b": 0.5, "a": 0.25}, MEASURED)
+    store.succeed(experiment.id, made, {"b": 0.5, "a": 0.25}, MEASURED, COMPUTED)
     return store.get(experiment.id)

@@ -47,7 +47,7 @@ def test_writers_wait_for_one_another(store: SqlStore, sample: Sample, open_stor
         mine = stores[number % 2]
         mine.add(experiments[number])
         mine.start(experiments[number].id)
-        return mine.succeed(experiments[number].id, [an_output()], {}, {})
+        return mine.succeed(experiments[number].id, [an_output()], {}, {}, {})
 
     with ThreadPoolExecutor(4) as pool:
         assert all(pool.map(whole_life, range(40)))
@@ -61,7 +61,7 @@ def test_one_of_two_simultaneous_ends_wins(store: SqlStore, sample: Sample, open
         store.add(experiment)
         store.start(experiment.id)
         with ThreadPoolExecutor(2) as pool:
-            success = pool.submit(store.succeed, experiment.id, [an_output()], {}, {})
+            success = pool.submit(store.succeed, experiment.id, [an_output()], {}, {}, {})
             cancel = pool.submit(other.cancel, experiment.id)
             assert success.result() != cancel.result()
         recorded = store.get(experiment.id)

@@ -31,7 +31,7 @@ def test_gives_videos_back_as_they_were(store: SqlStore) -> None:
     store.add(experiment)
     store.start(experiment.id)
     film = an_output(media_type="video/mp4", frames=96, rate=100 / 7)
-    store.succeed(experiment.id, [film], {}, {})
+    store.succeed(experiment.id, [film], {}, {}, {})
     found = store.get(experiment.id)
     assert (found.inputs, found.outputs) == ((part,), (film,))
 
@@ -101,13 +101,13 @@ def test_starting_again_counts_an_attempt_until_it_is_finished(store: SqlStore, 
         assert started is not None
         attempts.append((started.status, started.attempts))
     assert attempts == [(Status.RUNNING, 1), (Status.RUNNING, 2)]
-    assert store.succeed(experiment.id, [an_output()], {}, {})
+    assert store.succeed(experiment.id, [an_output()], {}, {}, {})
     assert store.start(experiment.id) is None
 
 
 def test_the_first_end_is_the_one_that_counts(store: SqlStore, sample: Sample) -> None:
     ends: dict[Status, Callable[[str], bool]] = {
-        Status.SUCCEEDED: lambda name: store.succeed(name, [an_output()], {}, {}),
+        Status.SUCCEEDED: lambda name: store.succeed(name, [an_output()], {}, {}, {}),
         Status.FAILED: lambda name: store.fail(name, "too large"),
         Status.CANCELLED: store.cancel,
     }
@@ -125,7 +125,7 @@ def test_the_first_end_is_the_one_that_counts(store: SqlStore, sample: Sample) -
 def test_only_a_running_experiment_succeeds(store: SqlStore, sample: Sample) -> None:
     experiment = an_experiment(sample)
     store.add(experiment)
-    assert not store.succeed(experiment.id, [an_output()], {}, {})
+    assert not store.succeed(experiment.id, [an_output()], {}, {}, {})
     assert store.get(experiment.id) == experiment
 
 
@@ -186,7 +186,7 @@ def test_a_deleted_experiment_leaves_a_tombstone_and_nothing_else(store: SqlStor
     assert store.used(digests) == set()
     assert store.page(limit=5).experiments == ()
     assert store.start(experiment.id) is None
-    assert not store.succeed(experiment.id, [an_output()], {}, {})
+    assert not store.succeed(experiment.id, [an_output()], {}, {}, {})
 
 
 def test_a_transient_experiment_leaves_no_tombstone(store: SqlStore, sample: Sample) -> None:

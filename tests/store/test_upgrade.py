@@ -20,15 +20,16 @@ def test_a_database_without_the_newer_columns_gets_them(store_url: str, open_sto
     store.add(Experiment("old", "rpn", inputs, {"seed": 1}, True, "owner", START))
     store.start("old")
     outputs = [Output(name, name, "image/png", 64, 32, 9, name * 8) for name in ("texture", "crop")]
-    store.succeed("old", outputs, {}, {})
+    store.succeed("old", outputs, {}, {}, {})
     engine = sa.create_engine(store_url)
     with engine.begin() as connection:
         connection.execute(sa.text("ALTER TABLE experiments DROP COLUMN diagnostics"))
+        connection.execute(sa.text("ALTER TABLE experiments DROP COLUMN environment"))
         connection.execute(sa.text("ALTER TABLE outputs DROP COLUMN kind"))
     engine.dispose()
 
     upgraded = open_store().get("old")
 
-    assert upgraded.diagnostics == {}
+    assert upgraded.diagnostics == upgraded.environment == {}
     assert [(output.name, output.kind) for output in upgraded.outputs] == [("texture", "texture"), ("crop", "view")]
     assert open_store().get("old") == upgraded

@@ -23,6 +23,8 @@ ALLOWED = {
     ("cell_shapes.py", "log1p"): "in double precision, rounded to single",
     ("colour_space.py", "linalg"): "in double precision, rounded to single",
     ("colour_space.py", "@"): "in double precision, rounded to single",
+    ("cut_texton.py", "linalg"): "in double precision, rounded to single",
+    ("cut_texton.py", "@"): "in double precision, rounded to single",
     ("patch_search.py", "matmul"): "sifts only: what its rounding leaves in doubt is measured again",
     ("periodic.py", "@"): "products of single precision are exact in double precision",
     ("structure.py", "arcsin"): "of a number that is shown, not of a texture",

@@ -4,6 +4,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
+from app.experiments.environment import environment
 from app.methods.registry import METHODS
 from tests.methods.runs import SMALL
 
@@ -269,6 +270,7 @@ def test_every_method_runs(site, film, animation, name):
     names = [output["name"] for output in record["outputs"]]
     assert names[0] == "texture"
     assert {"crop", *(f"crop-{number}" for number in range(2, len(files) + 1))} <= set(names)
+    assert record["environment"] == environment()
     measured = record["diagnostics"]["structure"]
     kinds = [output["kind"] for output in record["outputs"]]
     assert (len(measured["inputs"]), len(measured["outputs"])) == (len(files), kinds.count("texture"))

@@ -3,6 +3,7 @@
 import html
 import re
 from collections.abc import Callable
+from html import unescape
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,12 @@ def test_the_finished_page_shows_pictures_record_and_links(site: Any, experiment
         assert f'<img src="{address}/{name}"' in text
     for part in ("Time by stage", "Run again", "ADSN at the same phase", "New seed", "toroidal"):
         assert part in text
+
+
+def test_the_finished_page_says_what_computed_it(site: Any, experiment: dict[str, Any]) -> None:
+    text = page_of(site, experiment)
+    assert experiment["environment"]["cpu"] in unescape(text)
+    assert f"numpy {experiment['environment']['numpy']}" in text
 
 
 def test_every_download_is_a_file(site: Any, experiment: dict[str, Any]) -> None:

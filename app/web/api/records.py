@@ -10,6 +10,7 @@ from app.methods.announced import Announced
 from app.methods.effects import COMMON
 from app.methods.model import Method
 from app.web.api.bodies import Crop, TimeRange
+from app.web.api.environment import EnvironmentRecord
 
 API = "/api/v1"
 
@@ -135,6 +136,7 @@ class ExperimentRecord(BaseModel):
     outputs: list[OutputRecord]
     timings: dict[str, float] = Field(description="Seconds by stage.")
     diagnostics: DiagnosticsRecord | None = Field(description="Once it has succeeded.")
+    environment: EnvironmentRecord | None = Field(description="Once it has succeeded; null of earlier versions.")
     error: str | None = Field(description="Why it failed and what to try.")
     created_at: datetime
     started_at: datetime | None
@@ -164,12 +166,8 @@ class ExperimentRecord(BaseModel):
             position=snapshot.position,
             method=experiment.method,
             inputs=[
-                InputRecord(
-                    sample=source.sample,
-                    crop=Crop(**vars(source.crop)),
-                    frames=TimeRange(**vars(source.frames)),
-                )
-                for source in experiment.inputs
+                InputRecord(sample=each.sample, crop=Crop(**vars(each.crop)), frames=TimeRange(**vars(each.frames)))
+                for each in experiment.inputs
             ],
             parameters=dict(experiment.parameters),
             depth=experiment.depth,
@@ -177,6 +175,7 @@ class ExperimentRecord(BaseModel):
             outputs=[OutputRecord.of(output, url) for output in experiment.outputs if output.listed],
             timings={stage: round(seconds, 6) for stage, seconds in experiment.timings.items()},
             diagnostics=DiagnosticsRecord(**experiment.diagnostics) if experiment.diagnostics else None,
+            environment=EnvironmentRecord(**experiment.environment) if experiment.environment else None,
             error=experiment.error,
             created_at=experiment.created_at,
             started_at=experiment.started_at,
