@@ -1,7 +1,5 @@
 """`mix`: barycentres of Gaussian textures."""
 
-import math
-import re
 from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
@@ -17,7 +15,7 @@ from app.methods.options import WHOLE_IN_MEMORY, SpotParams, not_extended
 from app.methods.pictures import crops, refuse_infinite
 from app.methods.references import GAUSSIAN_MIXING, PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
 from app.methods.several import alike
-from app.numbers import plain
+from app.methods.weights import canonical
 from app.synthesis.field import Noise
 from app.synthesis.levels import Levels
 from app.synthesis.mixing import Mixture
@@ -25,25 +23,6 @@ from app.synthesis.team import Team
 
 MOST_STEPS, FURTHER = 16, 2  # of the path; samples beside the first two
 PANEL = 512  # pixels of each side that a step of the path shows in the strip
-NO_NUMBERS = (
-    "must be numbers from 0 on, and not all of them 0, with commas between them, such as 0.3,0.7, "
-    "or with semicolons where the commas are decimal, such as 0,3; 0,7"
-)
-
-
-def _parts(text: str) -> list[str]:
-    """Split a list at its semicolons, or at its spaces if no comma stands beside one, or at its commas.
-
-    Commas of both kinds, ``0,5, 0,5``, could be four numbers or two.
-    """
-    if ";" in text:
-        return text.split(";")
-    if not re.search(r"\s,|,\s", text.strip()):
-        apart = text.split()
-        return apart if len(apart) > 1 else text.split(",")
-    if "." not in text and re.search(r"\S,\S", text):
-        raise ValueError(text)
-    return text.split(",")
 
 
 class MixParams(SpotParams):
@@ -70,16 +49,7 @@ class MixParams(SpotParams):
     @field_validator("weights")
     @classmethod
     def _are_weights(cls, text: str) -> str:
-        if not text.strip():
-            return ""
-        try:
-            written = [plain(part, whole=False) for part in _parts(text)]
-        except ValueError:
-            raise ValueError(NO_NUMBERS) from None
-        found = [float(number) for number in written]
-        if not all(0 <= weight < math.inf for weight in found) or not 0 < sum(found) < math.inf:
-            raise ValueError(NO_NUMBERS)
-        return ",".join(written)
+        return canonical(text)
 
     def shares(self, count: int) -> list[float]:
         """The weights of ``count`` samples, of sum 1."""
