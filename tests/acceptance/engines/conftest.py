@@ -15,6 +15,7 @@ from tests.acceptance.engines.window import PATIENCE, Window
 
 SCREENSHOTS = Path(__file__).parents[1] / "screenshots"
 WIDTH, HEIGHT = 1440, 900
+PHONE = 390, 844
 WORKERS = 2  # of the service that tests drive
 FAILED = pytest.StashKey[bool]()
 
@@ -49,6 +50,17 @@ def window(request: pytest.FixtureRequest, site: Any, tmp_path: Path) -> Iterato
     else:
         made = {"Firefox": Firefox, "WebKit": WebKit}[request.param](site.url, tmp_path, WIDTH, HEIGHT)
     with opened(made, request, WIDTH, HEIGHT) as window:
+        yield window
+
+
+@pytest.fixture(params=["Chromium", "Firefox"])
+def phone(request: pytest.FixtureRequest, site: Any, tmp_path: Path) -> Iterator[Window]:
+    """A window with the size and the touch screen of a phone; WebKit's driver has no fingers."""
+    if request.param == "Chromium":
+        made: Window = Chromium(request.getfixturevalue("browser"), site.url, tmp_path, *PHONE, phone=True)
+    else:
+        made = Firefox(site.url, tmp_path, *PHONE, phone=True)
+    with opened(made, request, *PHONE) as window:
         yield window
 
 

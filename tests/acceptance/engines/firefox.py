@@ -40,6 +40,7 @@ TOUCH = {"dom.w3c_touch_events.enabled": 1}
 
 class Firefox(Window):
     engine = "Firefox"
+    fingers_scroll = False  # those of its driver reach the page, but not what scrolls it
 
     def __init__(self, url: str, directory: Path, width: int, height: int, phone: bool = False) -> None:
         self.url = url

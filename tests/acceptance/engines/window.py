@@ -39,7 +39,10 @@ PLACE = """async (selector, text) => {
         const there = document.elementFromPoint(x, y);
         return there && (found.contains(there) || there.contains(found));
     };
-    if (!free(middle())) found.scrollIntoView({ block: "center", inline: "center", behavior: "instant" });
+    if (!free(middle())) {
+        found.scrollIntoView({ block: "center", inline: "center", behavior: "instant" });
+        return null; // it is looked at again, when what takes hold of pointers and fingers knows of it too
+    }
     const before = middle();
     await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
     const now = middle();
@@ -78,6 +81,7 @@ class Window(ABC):
     """One window with a profile of its own."""
 
     engine: str
+    fingers_scroll = True
 
     @abstractmethod
     def go(self, address: str) -> None:
