@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from datetime import UTC, datetime
+from itertools import cycle
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,7 @@ from app.methods.fields import FormField, fields
 from app.methods.model import Method, Size
 from app.methods.registry import METHODS
 from app.web.snippets import snippets
+from tests.methods.runs import SMALL
 
 BASE = "https://texture.example.org"
 EVERY = pytest.mark.parametrize("method", METHODS.values(), ids=METHODS)
@@ -117,34 +119,40 @@ def test_the_command_line_takes_the_options_of_its_snippet(method: Method) -> No
         assert (done.exit_code, done.stderr) == (2, f"microtexture: There is no file {words[1]}.\n")
 
 
-@pytest.mark.parametrize(
-    ("method", "samples", "parameters"),
-    [
-        ("mix", ["gravel_gray"] * 3, {"weights": "0.25, 0.5 ,0.25", "strip": 0, "width": 40}),
-        ("video-rpn", ["clip"], {"frames": 7, "width": 50}),
-    ],
-)
-@pytest.mark.parametrize("language", ["curl", "Command line", "Python"])
-def test_a_snippet_runs_as_it_stands_and_gives_the_texture_of_the_page(
-    site: Any, clip: str, tmp_path: Path, language: str, method: str, samples: list[str], parameters: dict[str, Any]
-) -> None:
-    inputs = [
-        {"sample": clip if name == "clip" else name, "crop": {"x": place, "y": 2, "width": 30, "height": 24}}
-        for place, name in enumerate(samples)
-    ]
-    record = site.finished(method=method, inputs=inputs, parameters=parameters)
+def run_snippet(site: Any, record: dict[str, Any], language: str, directory: Path) -> None:
+    """Run it as it stands; it writes the texture of the experiment."""
     text = texts(site.service.get(record["id"]), site.url)[language]
     command = [sys.executable, "-c", text] if language == "Python" else ["bash", "-euc", text]
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    environment = {**os.environ, "PATH": path}
     done = subprocess.run(
-        command,
-        cwd=tmp_path,
-        env={**os.environ, "PATH": path},
-        check=False,
-        capture_output=True,
-        text=True,
-        timeout=120,
+        command, cwd=directory, env=environment, check=False, capture_output=True, text=True, timeout=120
     )
     assert done.returncode == 0, done.stderr
-    (made,) = tmp_path.glob("texture.*")
+    (made,) = directory.glob("texture.*")
     assert made.read_bytes() == site.client.get(f"{record['url']}/outputs/texture").content
+
+
+def inputs_at(*samples: str) -> list[dict[str, Any]]:
+    return [
+        {"sample": sample, "crop": {"x": place, "y": 0, "width": 44, "height": 40}}
+        for place, sample in enumerate(samples)
+    ]
+
+
+@pytest.mark.parametrize(
+    ("method", "language"), list(zip(METHODS.values(), cycle(("Python", "curl", "Command line")))), ids=METHODS
+)
+def test_a_snippet_of_every_method_runs(site: Any, clip: str, tmp_path: Path, method: Method, language: str) -> None:
+    samples = [clip if slot.moving else "gravel_gray" for slot in method.inputs]
+    parameters = {"seed": 5, **SMALL.get(method.name, {})}
+    parameters |= {"grid": 6} if "grid" in parameters else {}
+    record = site.finished(method=method.name, inputs=inputs_at(*samples), parameters=parameters)
+    run_snippet(site, record, language, tmp_path)
+
+
+@pytest.mark.parametrize("language", ["curl", "Command line", "Python"])
+def test_a_snippet_with_a_text_runs_in_every_language(site: Any, tmp_path: Path, language: str) -> None:
+    parameters = {"weights": "0.25, 0.5 ,0.25", "strip": 0, "width": 50}
+    record = site.finished(method="mix", inputs=inputs_at(*["gravel_gray"] * 3), parameters=parameters)
+    run_snippet(site, record, language, tmp_path)
