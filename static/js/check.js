@@ -29,7 +29,7 @@ for (const words of summary?.querySelectorAll("[data-about]") ?? []) {
   const { about, lasting } = words.dataset;
   raised.set(about, { words, lasting: lasting !== undefined, text: words.textContent, about: texts(about) });
 }
-let asked = summary ? texts() : null; // the service has answered this one
+let asked = null; // nothing yet, also where the service has answered: a person may have been quicker than this script
 
 const idOf = (name) => `${name.replaceAll(".", "-")}-error`;
 

@@ -3,7 +3,7 @@
 import re
 from typing import Any
 
-from playwright.sync_api import expect
+from playwright.sync_api import Route, expect
 
 CHECK = "/experiments/check"
 PATCHWORK = "/samples/gravel_gray?method=patchwork&crop=96,96,320,320"
@@ -42,6 +42,25 @@ def test_sending_is_not_hindered_and_says_the_same(visitors: Any) -> None:
     expect(page.locator(".summary li")).to_have_text(words)
     page.fill("#patchwork-grid", "16")
     expect(page.locator(".summary")).to_have_count(0)
+
+
+def test_who_is_quicker_than_the_script_is_answered_too(visitors: Any, until: Any) -> None:
+    """A field that was mended while the page was still loading takes the service's message with it."""
+    visitors.refusals_expected = True
+    page = visitors.visit(f"{PATCHWORK}&grid=400")
+    page.wait_for_load_state("networkidle")
+    held: list[Route] = []
+
+    def hold(route: Route) -> None:
+        held.append(route)
+
+    page.route("**/check.js*", hold)
+    page.get_by_role("button", name="Synthesise").click(no_wait_after=True)
+    until(lambda: held or page.wait_for_timeout(20), "the script of the refused form's page")
+    page.fill("#patchwork-grid", "16")
+    held[0].continue_()
+    expect(page.locator(".summary")).to_have_count(0)
+    expect(page.locator("#patchwork-grid-error")).to_be_hidden()
 
 
 def test_a_run_that_would_take_too_much_is_told_from_one_that_takes_much(visitors: Any) -> None:
