@@ -13,7 +13,9 @@ from tests.acceptance.engines.walk import CROP, TEXTURE, crop_of, on_sample, run
 from tests.acceptance.engines.window import PATIENCE, Window, difference
 from tests.acceptance.waiting import until
 
-FRAMES, RATE = 72, 3  # of the clip; slow, so that what is looked at lies within one round of it on a busy machine too
+# Slow, so that what is looked at lies within one round of a film: in WebKitGTK 2.50 one of two films that go round over
+# HTTP stands still after some rounds, with or without a script that paces them.
+FRAMES, RATE = 72, 3  # of the clip
 FIRST, COUNT = 12, 36  # of the range that is taken
 NOISE = 2.0  # levels that engines may differ by in the colours of a film without loss
 
