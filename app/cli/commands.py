@@ -134,7 +134,7 @@ def catalogue(
 
     from app.cli.settings import read_settings
     from app.main import build_service
-    from app.methods.explanation import Exhibit
+    from app.methods.explanations.model import Exhibit
 
     def told(number: int, of: int, exhibit: Exhibit, error: str | None) -> None:
         samples = " and ".join(sample for sample, _ in exhibit.inputs)

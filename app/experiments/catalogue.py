@@ -14,7 +14,7 @@ from app.experiments.submission import Allowed, NewExperiment, NewInput, prepare
 from app.gallery.exhibits import exhibits
 from app.gallery.identity import identifier
 from app.images.crop import Rectangle
-from app.methods.explanation import Exhibit
+from app.methods.explanations.model import Exhibit
 from app.settings import Settings
 
 log = logging.getLogger(__name__)

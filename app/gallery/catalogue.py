@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from app.methods.explanation import Exhibit
+from app.methods.explanations.model import Exhibit
 
 
 @dataclass(frozen=True)

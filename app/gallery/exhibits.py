@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from app.gallery.catalogue import FAILURES, SUCCESSES
 from app.gallery.identity import identifier
 from app.gallery.literature import FIGURES
-from app.methods.explanation import Exhibit, Figure
+from app.methods.explanations.model import Exhibit, Figure
 from app.methods.model import Method
 from app.methods.registry import METHODS
 

@@ -3,7 +3,7 @@
 import hashlib
 import json
 
-from app.methods.explanation import Exhibit
+from app.methods.explanations.model import Exhibit
 from app.methods.registry import method
 
 PREFIX = "figure-"

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from app.methods.explanation import Exhibit, Figure, Reference
-from app.methods.references import RANDOM_PHASE_TEXTURES
+from app.methods.explanations.model import Exhibit, Figure, Reference
+from app.methods.explanations.references import RANDOM_PHASE_TEXTURES
 
 GRAVEL = (("gravel_gray", "96,96,256,256"),)
 SMALL_GRAVEL = (("gravel_gray", "96,96,80,80"),)

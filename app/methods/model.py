@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.methods.announced import Announced
-from app.methods.explanation import Explanation, Reference
+from app.methods.explanations.model import Explanation, Reference
 from app.numbers import FAR
 
 MAX_SEED = 2**53 - 1  # the largest whole number that JSON readers in JavaScript keep exactly

@@ -8,7 +8,7 @@ from app.errors import AppError
 from app.experiments.model import Experiment, Status
 from app.experiments.service import Service
 from app.images.crop import Rectangle
-from app.methods.explanation import Exhibit, Figure
+from app.methods.explanations.model import Exhibit, Figure
 from app.methods.registry import method
 from app.web.clips import Clip, address, clip_of
 from app.web.drafts import form_url

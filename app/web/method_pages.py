@@ -10,7 +10,7 @@ from app.experiments.model import Experiment
 from app.experiments.service import Service
 from app.gallery.exhibits import teaser
 from app.gallery.groups import Group, groups
-from app.methods.explanation import Exhibit
+from app.methods.explanations.model import Exhibit
 from app.methods.fields import FormField, fields
 from app.methods.model import Method
 from app.methods.registry import METHODS, method

@@ -12,8 +12,8 @@ from app.experiments.meter import MICRO, STRUCTURED, Index, Reading, reading
 from app.experiments.model import Sample
 from app.experiments.service import Service
 from app.images.crop import Rectangle
-from app.methods.explanation import Formula
-from app.methods.references import RANDOM_PHASE_TEXTURES, SHARPNESS
+from app.methods.explanations.model import Formula
+from app.methods.explanations.references import RANDOM_PHASE_TEXTURES, SHARPNESS
 from app.numbers import whole
 from app.samples import bundled
 from app.settings import Settings

@@ -20,7 +20,7 @@ from app.gallery.exhibits import exhibits
 from app.gallery.groups import groups
 from app.gallery.identity import identifier
 from app.images.crop import Rectangle
-from app.methods.explanation import Exhibit
+from app.methods.explanations.model import Exhibit
 from app.methods.registry import METHODS
 from app.settings import ROOT, Settings
 from tests.bundled_samples import sample_of

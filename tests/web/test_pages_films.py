@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from app.methods.explanation import Exhibit
+from app.methods.explanations.model import Exhibit
 from app.web.clips import clip_of
 from app.web.exhibits import Shown, shown
 from app.web.templating import TEMPLATES

@@ -1,6 +1,6 @@
 """Articles that several methods come from."""
 
-from app.methods.explanation import Reference
+from app.methods.explanations.model import Reference
 
 IPOL_RPN = Reference(
     "B. Galerne, Y. Gousseau, J.-M. Morel",
