@@ -32,7 +32,8 @@ from app.experiments.submission import Allowed, Answer, NewExperiment, NewInput,
 from app.images.crop import Frames, Rectangle
 from app.images.decode import Decoded, Limits, decode
 from app.methods.effects import outputs_of
-from app.methods.model import Context, Film, Method, Picture, Progress, Source, StillParams
+from app.methods.model import Context, Film, Method, Picture, Progress, Source
+from app.methods.params import StillParams
 from app.methods.registry import method as method_named
 from app.numbers import said
 from app.settings import Settings

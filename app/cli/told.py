@@ -4,7 +4,8 @@ from rich.console import Console
 from rich.table import Table
 
 from app.methods.fields import fields
-from app.methods.model import Method, MovingParams
+from app.methods.model import Method
+from app.methods.params import MovingParams
 
 
 def tell(method: Method, console: Console) -> None:

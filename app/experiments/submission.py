@@ -14,7 +14,8 @@ from app.experiments.ownership import new_identifier
 from app.images.crop import Frames, Rectangle
 from app.methods.effects import output_named, outputs_of, refuse_deep, without_effect
 from app.methods.fields import fields, reason, requirement
-from app.methods.model import Method, MovingParams, Size, Slot, StillParams
+from app.methods.model import Method, Size, Slot
+from app.methods.params import MovingParams, StillParams
 from app.methods.registry import method as method_named
 from app.numbers import said
 from app.settings import MEBIBYTE, Settings

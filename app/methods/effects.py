@@ -4,7 +4,8 @@ from collections.abc import Collection, Sequence
 
 from app.errors import InvalidInputError
 from app.methods.announced import Announced
-from app.methods.model import Method, MovingParams, Size, StillParams
+from app.methods.model import Method, Size
+from app.methods.params import MovingParams, StillParams
 
 COMMON = frozenset(MovingParams.model_fields)  # whoever runs several methods gives them to each, whether it needs them
 EVERYTHING = "have all of them made (--all on the command line, an experiment over the API)"

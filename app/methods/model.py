@@ -11,59 +11,10 @@ from typing import Any, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, ConfigDict, Field
 
 from app.methods.announced import Announced
 from app.methods.explanations.model import Explanation, Reference
-from app.numbers import FAR
-
-MAX_SEED = 2**53 - 1  # the largest whole number that JSON readers in JavaScript keep exactly
-
-
-class StillParams(BaseModel):
-    """Parameters that every still-image method has."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
-    width: int | None = Field(
-        None, ge=1, le=FAR, title="Width", description="Pixels of the texture; default: as the crop."
-    )
-    height: int | None = Field(
-        None, ge=1, le=FAR, title="Height", description="Pixels of the texture; default: as the crop."
-    )
-    seed: int = Field(
-        0,
-        ge=0,
-        le=MAX_SEED,
-        title="Seed",
-        description="Start of the random numbers: the same seed gives the same texture, another seed another one.",
-    )
-
-
-class MovingParams(StillParams):
-    """Parameters that every method of moving textures has besides."""
-
-    frames: int | None = Field(
-        None, ge=2, le=FAR, title="Frames", description="Frames of the video; default: as the clip."
-    )
-
-
-class LoopParams(MovingParams):
-    """Parameters of those whose videos can play in a loop or not."""
-
-    loop: bool = Field(
-        True,
-        title="Loop",
-        description="The last frame continues in the first, so that the video plays for ever without a jump.",
-    )
-
-
-class SeamlessParams(LoopParams):
-    """Parameters of those whose frames can tile or not besides."""
-
-    tileable: bool = Field(
-        True, title="Tileable", description="Opposite edges of every frame meet, so that it tiles without a seam."
-    )
+from app.methods.params import StillParams
 
 
 class Progress(Protocol):
@@ -205,7 +156,7 @@ class Method:
         Raises `app.errors.InvalidInputError` for a combination that cannot run, before anything is queued.
     run : callable ``(sources, params, context) -> iterator of Picture``
         Yields its pictures as they are made, the main one, ``texture``, first; what is not asked for is not computed.
-        Among them is ``crop``, and ``crop-2``, … for further inputs (see `app.methods.pictures.crops`).
+        Among them is ``crop``, and ``crop-2``, … for further inputs (see `app.methods.output.pictures.crops`).
     outputs : tuple of Announced
         Every picture that it may yield, in that order.
     more : int

@@ -1,21 +1,21 @@
 """The registry: every method of the service, by name."""
 
 from app.errors import NotFoundError
-from app.methods.adsn import ADSN
-from app.methods.dsn import DSN
-from app.methods.efros_leung import EFROS_LEUNG
-from app.methods.heeger_bergen import HEEGER_BERGEN
-from app.methods.mix import MIX
+from app.methods.gaussian.adsn import ADSN
+from app.methods.gaussian.dsn import DSN
+from app.methods.gaussian.mix import MIX
+from app.methods.gaussian.modulus_phase import MODULUS_PHASE
+from app.methods.gaussian.rayleigh import RAYLEIGH
+from app.methods.gaussian.rpn import RPN
+from app.methods.gaussian.texton import TEXTON
+from app.methods.gaussian.video_rpn import VIDEO_RPN
 from app.methods.model import Method
-from app.methods.modulus_phase import MODULUS_PHASE
-from app.methods.patchwork import PATCHWORK
-from app.methods.rayleigh import RAYLEIGH
-from app.methods.rpn import RPN
-from app.methods.texton import TEXTON
-from app.methods.transfer import TRANSFER
-from app.methods.video_patchwork import VIDEO_PATCHWORK
-from app.methods.video_rpn import VIDEO_RPN
-from app.methods.video_transfer import VIDEO_TRANSFER
+from app.methods.patchwork.patchwork import PATCHWORK
+from app.methods.patchwork.transfer import TRANSFER
+from app.methods.patchwork.video_patchwork import VIDEO_PATCHWORK
+from app.methods.patchwork.video_transfer import VIDEO_TRANSFER
+from app.methods.pyramid.heeger_bergen import HEEGER_BERGEN
+from app.methods.sampling.efros_leung import EFROS_LEUNG
 
 METHODS: dict[str, Method] = {
     "rpn": RPN,

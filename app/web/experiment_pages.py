@@ -17,7 +17,8 @@ from app.experiments.submission import NewExperiment, NewInput
 from app.images.crop import Frames, Rectangle
 from app.images.video.writers import repeated
 from app.methods.fields import fields
-from app.methods.model import Method, MovingParams
+from app.methods.model import Method
+from app.methods.params import MovingParams
 from app.methods.registry import METHODS, method
 from app.web.clips import address, moves
 from app.web.deps import ServiceDep, TokenDep, base_url, owner_of_press, pressed, remember_owner

@@ -7,7 +7,8 @@ from typing import Any
 from pydantic import ValidationError
 
 from app.methods.fields import FormField, fields, requirement
-from app.methods.model import LoopParams, Method, MovingParams, SeamlessParams, StillParams
+from app.methods.model import Method
+from app.methods.params import LoopParams, MovingParams, SeamlessParams, StillParams
 from app.numbers import plain, said
 
 SHARED = tuple(StillParams.model_fields)  # width, height and seed: asked once for all methods

@@ -9,7 +9,8 @@ from app.errors import NotFoundError
 from app.experiments.model import Sample
 from app.images.crop import Rectangle
 from app.methods.fields import FormField, fields
-from app.methods.model import Method, StillParams, first_size
+from app.methods.model import Method, first_size
+from app.methods.params import StillParams
 from app.methods.registry import METHODS
 from app.samples import BundledSample
 from app.web.drafts import SIZES, Draft

@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from app.methods.model import Context, Film, Method, MovingParams, Picture, Progress, Source
+from app.methods.model import Context, Film, Method, Picture, Progress, Source
+from app.methods.params import MovingParams
 
 # What methods that copy patches need to run on inputs as small as these.
 SMALL: Mapping[str, Mapping[str, Any]] = {

@@ -13,7 +13,8 @@ from app.errors import CancelledError, InvalidInputError
 from app.experiments.submission import Allowed, NewExperiment, NewInput, prepare
 from app.images.crop import Rectangle
 from app.methods.fields import fields
-from app.methods.model import Method, Source, StillParams
+from app.methods.model import Method, Source
+from app.methods.params import StillParams
 from app.methods.registry import METHODS
 from app.samples import bundled
 from app.settings import ROOT

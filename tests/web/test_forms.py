@@ -7,7 +7,8 @@ import pytest
 from pydantic import Field
 
 from app.methods.fields import fields, requirement
-from app.methods.model import LoopParams, Method, StillParams
+from app.methods.model import Method
+from app.methods.params import LoopParams, StillParams
 from app.methods.registry import METHODS
 from app.web.forms import SHARED, form_name, own_fields, parse, shared
 

@@ -1,0 +1,167 @@
+"""`dsn`: discrete spot noise."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from math import ceil
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from app.errors import InvalidInputError
+from app.methods.announced import shown_inputs, texture, views
+from app.methods.explanations.dsn import EXPLANATION
+from app.methods.explanations.references import IPOL_RPN, PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES, SPOT_NOISE
+from app.methods.gaussian.params import SpotParams, not_extended
+from app.methods.inputs import INPUTS, refuse_infinite
+from app.methods.model import Context, Fact, Method, Picture, Progress, Size, Source
+from app.methods.output.pictures import crops, encode
+from app.methods.params import WHOLE_IN_MEMORY
+from app.synthesis.dsn import Counts, counts, dsn, excess_kurtosis, shape, standard_spot
+from app.synthesis.spot import Spot
+from app.synthesis.spot_noise import asymptotic, sample_spot
+
+Real = NDArray[np.float32]
+
+ORDERS = (10, 100, 1000, 10_000, 100_000)
+DEVIATIONS = 3  # of a standard spot's noise, from mid-grey to black and to white
+
+
+class DsnParams(SpotParams):
+    """Parameters of the discrete spot noise."""
+
+    order: int = Field(
+        100,
+        ge=1,
+        le=10**9,
+        title="Order n",
+        description="How many copies of the spot are thrown. With few of them one sees each; with very many the "
+        "texture cannot be told from its limit, the asymptotic discrete spot noise. It takes the same time for any n.",
+    )
+    spot: Literal["sample", "disc", "gaussian"] = Field(
+        "sample",
+        title="Spot",
+        description="What is thrown: the crop ('sample'), or a shape that shows the model bare, in grey: a white disc "
+        "('disc') or a Gaussian blot ('gaussian').",
+    )
+    radius: float = Field(
+        8.0,
+        ge=0.5,
+        le=1024,
+        title="Radius",
+        description="Radius of the disc in pixels; the Gaussian's standard deviation is half of it. Not used when the "
+        "spot is the sample.",
+    )
+    convergence: bool = Field(
+        False,
+        title="Convergence",
+        description="Make a gallery besides: n = 10, 100, 1000, 10 000, 100 000, and the limit. Every picture has the "
+        "points of the one before and more.",
+    )
+
+
+def check(sizes: Sequence[Size], params: DsnParams) -> None:
+    """Refuse a shape that does not fit into the texture."""
+    width, height = params.width or sizes[0].width, params.height or sizes[0].height
+    if params.spot != "sample" and 2 * params.radius + 1 > min(width, height):
+        raise InvalidInputError(
+            f"A spot of radius {params.radius:g} does not fit into a texture of {width} × {height} pixels: take a "
+            f"smaller radius, or a texture of at least {ceil(2 * params.radius + 1)} pixels each way.",
+            "parameters.radius",
+        )
+
+
+def run(sources: Sequence[Source], params: DsnParams, context: Context) -> Iterator[Picture]:
+    """The texture, the gallery of its convergence if it is asked for, and what was thrown where."""
+    source = sources[0]
+    size = source.size
+    check([size], params)
+    refuse_infinite(sources)
+    height, width = params.height or size.height, params.width or size.width
+    context.progress("spot", 0.0)
+    spot = _spot(source, height, width, params, context)
+    kurtosis = float(excess_kurtosis(spot).mean())
+
+    def picture(name: str, title: str, values: Real, order: float) -> Picture:
+        fact = Fact("excess-kurtosis", "Excess kurtosis of a pixel's law (0 for a Gaussian)", kurtosis / order)
+        return encode(name, title, values, source.peak, context, kind="texture", facts=(fact,))
+
+    def made(order: int, progress: Progress) -> Real:
+        return dsn(spot, order, seed=params.seed, threads=context.threads, progress=progress)
+
+    end = 0.2 if params.convergence else 0.8
+    yield picture("texture", "Texture", made(params.order, context.between(0.05, end)), params.order)
+    if params.convergence:
+        step = (0.8 - end) / (len(ORDERS) + 1)
+        for order in ORDERS:
+            values = made(order, context.between(end, end + step))
+            yield picture(f"dsn-{order}", f"n = {order:,}".replace(",", "\N{NO-BREAK SPACE}"), values, order)
+            end += step
+        values = asymptotic(spot, params.seed, context.threads, context.between(end, 0.8))
+        yield picture("adsn", "The limit: asymptotic discrete spot noise", values, np.inf)
+    context.progress("spot", 0.8)
+    yield from crops(sources, context)
+    context.progress("spot", 0.85)
+    if params.spot == "sample":
+        yield encode("spot", "Spot", spot.rows(0, height).transpose(1, 2, 0), source.peak, context)
+    else:
+        yield encode("spot", "Spot", shape(params.spot, height, width, params.radius), 1, context)
+    context.progress("points", 0.9)
+    yield _points(counts(height, width, params.order, params.seed), context)
+    context.progress("points", 1.0)
+
+
+def idle(sizes: Sequence[Size], params: DsnParams) -> Mapping[str, str]:
+    """The radius of a spot that is the sample, and how a sample fades out that is not the spot."""
+    if params.spot == "sample":
+        words = "the spot is the sample, as it is; take the disc or the Gaussian as spot, or leave it out."
+        return {**not_extended(sizes, params), "radius": words}
+    words = f"the spot is no sample, but a {params.spot}; take the sample as spot, or leave it out."
+    return dict.fromkeys(("alpha", "window"), words)
+
+
+def _points(drawn: Counts, context: Context) -> Picture:
+    """The least count as black and the greatest as white."""
+    least, greatest = int(drawn.min()), int(drawn.max())
+    facts = (
+        Fact("least-points", "Least number of spots on a pixel", least),
+        Fact("most-points", "Greatest number of spots on a pixel", greatest),
+    )
+    drawn -= least
+    values, peak = drawn.astype(np.float32), max(1, greatest - least)
+    return encode("points", "How many spots each pixel got", values, peak, context, facts=facts)
+
+
+def _spot(source: Source, height: int, width: int, params: DsnParams, context: Context) -> Spot:
+    if params.spot == "sample":
+        return sample_spot(source.pixels, height, width, params.alpha, params.window, context.threads)
+    middle = source.peak / 2
+    return standard_spot(params.spot, height, width, params.radius, middle, middle / DEVIATIONS)
+
+
+_SPOT = ("spot", "radius", "alpha", "window")
+OUTPUTS = (
+    texture(of=("order", *_SPOT)),
+    *(
+        texture(name, ("convergence", *_SPOT), lambda params, inputs: params.convergence, "“Convergence” is on")
+        for name in (*(f"dsn-{order}" for order in ORDERS), "adsn")
+    ),
+    *shown_inputs(),
+    *views("spot", of=_SPOT),
+    *views("points", of=("order",)),
+)
+
+DSN = Method(
+    name="dsn",
+    title="Discrete spot noise (DSN)",
+    summary="The sum of n copies of the crop, or of a disc, at random places.",
+    inputs=INPUTS,
+    params=DsnParams,
+    references=(RANDOM_PHASE_TEXTURES, SPOT_NOISE, IPOL_RPN, PERIODIC_PLUS_SMOOTH),
+    explanation=EXPLANATION,
+    check=check,
+    run=run,
+    outputs=OUTPUTS,
+    idle=idle,
+    most_pixels=WHOLE_IN_MEMORY,
+)

@@ -1,0 +1,204 @@
+"""`mix`: barycentres of Gaussian textures."""
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, field_validator
+
+from app.errors import InvalidInputError
+from app.images.png import PngWriter, encode_png
+from app.methods.announced import Announced, Condition, from_inputs, shown_inputs, texture
+from app.methods.explanations.mix import EXPLANATION
+from app.methods.explanations.references import GAUSSIAN_MIXING, PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
+from app.methods.gaussian.params import SpotParams, not_extended
+from app.methods.gaussian.weights import canonical
+from app.methods.inputs import alike, refuse_infinite
+from app.methods.model import Context, Method, Picture, Size, Slot, Source
+from app.methods.output.pictures import crops
+from app.methods.params import WHOLE_IN_MEMORY
+from app.synthesis.field import Noise
+from app.synthesis.levels import Levels
+from app.synthesis.mixing import Mixture
+from app.synthesis.team import Team
+
+MOST_STEPS, FURTHER = 16, 2  # of the path; samples beside the first two
+PANEL = 512  # pixels of each side that a step of the path shows in the strip
+
+
+class MixParams(SpotParams):
+    """Parameters of the mixture."""
+
+    weights: str = Field(
+        "",
+        max_length=100,
+        title="Weights",
+        description="How much of each sample: numbers with commas between them, one for each sample in their order, "
+        "such as 0.3,0.7; or with semicolons or spaces, where the commas are decimal: 0,3; 0,7. Only their proportions "
+        "count. Empty: as much of each.",
+    )
+    strip: int = Field(
+        8,
+        ge=0,
+        le=MOST_STEPS,
+        title="Steps of the path",
+        description="How many textures to make along the path from the first sample (ρ = 0) to the second (ρ = 1), "
+        "beside the one of the given weights; 0 for none. A path needs two samples: with more of them, each one's own "
+        "texture is made instead.",
+    )
+
+    @field_validator("weights")
+    @classmethod
+    def _are_weights(cls, text: str) -> str:
+        return canonical(text)
+
+    def shares(self, count: int) -> list[float]:
+        """The weights of ``count`` samples, of sum 1."""
+        found = [float(number) for number in self.weights.split(",")] if self.weights.strip() else [1.0] * count
+        return [weight / sum(found) for weight in found]
+
+
+def check(sizes: Sequence[Size], params: MixParams) -> None:
+    """Refuse weights that are not one for each sample, and a path of a single step."""
+    given = len(params.shares(len(sizes)))
+    if given != len(sizes):
+        raise InvalidInputError(
+            f"There are {len(sizes)} samples and {given} weight{'s' * (given > 1)}: give one weight for each sample, "
+            "or none to take as much of each.",
+            "parameters.weights",
+        )
+    if params.strip == 1:
+        raise InvalidInputError(
+            "A path has two ends: take 2 steps or more, or 0 to make no path.",
+            "parameters.strip",
+        )
+
+
+def idle(sizes: Sequence[Size], params: MixParams) -> Mapping[str, str]:
+    """The extension's parameters where nothing is extended, and a path's where there is none."""
+    words = f"a path needs two samples, and there are {len(sizes)}; leave the steps out."
+    return {**not_extended(sizes, params), **({"strip": words} if len(sizes) > 2 else {})}
+
+
+class _Strip:
+    """Steps of a path side by side; of larger textures the upper left corner."""
+
+    def __init__(self, steps: int, height: int, width: int, channels: int, context: Context) -> None:
+        self._context = context
+        self._height, self._width = min(height, PANEL), min(width, PANEL)
+        kind = np.uint8 if context.depth == 8 else np.uint16
+        self._pixels = np.empty((self._height, steps * self._width, channels), kind)
+
+    def put(self, step: int, first: int, block: NDArray[np.unsignedinteger]) -> None:
+        part = block[: max(0, self._height - first), : self._width]
+        self._pixels[first : first + len(part), step * self._width : (step + 1) * self._width] = part
+
+    def picture(self) -> Picture:
+        height, width = self._pixels.shape[:2]
+        png = encode_png(self._pixels, self._context.threads)
+        return Picture("strip", "The path from the first sample to the second", width, height, png)
+
+
+class _Run:
+    """One run: makes its pictures one by one."""
+
+    def __init__(self, sources: Sequence[Source], params: MixParams, context: Context, team: Team) -> None:
+        self._sources, self._params, self._context, self._team = sources, params, context, team
+        samples = alike(sources)
+        self._height, self._width = params.height or len(samples[0]), params.width or samples[0].shape[1]
+        self._channels = samples[0].shape[2]
+        self._shares = params.shares(len(sources))
+        self._begin, self._end = 0.1, 0.3
+        noise = Noise(
+            self._height, self._width, seed=params.seed, rayleigh=True, alpha=params.alpha, window=params.window
+        )
+        self._mixture = Mixture(samples, self._shares, noise, team, self._progress)
+
+    def _progress(self, stage: str, part: float) -> None:
+        begin, end = (0.0, 0.1) if stage == "spot" else (self._begin, self._end)
+        self._context.progress(stage, begin + part * (end - begin))
+
+    def pictures(self) -> Iterator[Picture]:
+        path = self._params.strip if len(self._sources) == 2 else 0
+        further = path or len(self._sources) * (len(self._sources) > 2)
+        yield self._texture("texture", "Texture", self._shares, 0.4)
+        yield from crops(self._sources, self._context)
+        strip = _Strip(path, self._height, self._width, self._channels, self._context) if path else None
+        for step in range(further):
+            end = 0.45 + 0.5 * (step + 1) / further
+            if strip:
+                rho = step / (path - 1)
+                yield self._texture(f"mix-{step + 1}", f"ρ = {rho:.2f}", [1 - rho, rho], end, strip, step)
+            else:
+                alone = [float(index == step) for index in range(further)]
+                yield self._texture(f"sample-{step + 1}", f"Sample {step + 1} alone", alone, end)
+        if strip:
+            self._context.progress("strip", 0.95)
+            yield strip.picture()
+        self._context.progress("strip" if strip else "texture", 1.0)
+
+    def _texture(
+        self, name: str, title: str, weights: list[float], end: float, strip: _Strip | None = None, step: int = 0
+    ) -> Picture:
+        writer = PngWriter(self._width, self._height, self._channels, self._context.depth)
+
+        def write(first: int, block: NDArray[np.unsignedinteger]) -> None:
+            writer.write(first, block)
+            if strip:
+                strip.put(step, first, block)
+
+        self._begin, self._end = self._end, end
+        levels = Levels(write, self._channels, 0, self._sources[0].peak, 2**self._context.depth - 1)
+        self._mixture.emit(weights, levels, "strip" if strip else "texture")
+        return Picture(name, title, self._width, self._height, writer.finish(), "texture")
+
+
+def run(sources: Sequence[Source], params: MixParams, context: Context) -> Iterator[Picture]:
+    """The barycentre; then the path between two samples, or each one's own texture if there are more."""
+    check([source.size for source in sources], params)
+    refuse_infinite(sources)
+    with Team(context.threads) as team:
+        yield from _Run(sources, params, context, team).pictures()
+
+
+_PATH, _WEIGHED = ("alpha", "window", "strip"), ("alpha", "window", "weights")
+
+
+def _holds(step: int) -> Condition:
+    """The condition that there is a path that has this step, from 1."""
+    return lambda params, inputs: inputs == 2 and params.strip >= step
+
+
+OUTPUTS = (
+    texture(of=_WEIGHED),
+    *shown_inputs(2 + FURTHER, least=2),
+    *(
+        texture(f"mix-{step}", _PATH, _holds(step), f"there are two inputs and {step} “Steps of the path” or more")
+        for step in range(1, MOST_STEPS + 1)
+    ),
+    *(
+        texture(f"sample-{number}", _WEIGHED, from_inputs(least), f"there are {least} inputs or more")
+        for number, least in ((1, 3), (2, 3), (3, 3), (4, 4))
+    ),
+    Announced("strip", of=_PATH, given=_holds(1), condition="there are two inputs and some “Steps of the path”"),
+)
+
+MIX = Method(
+    name="mix",
+    title="Mixture of textures",
+    summary="Gaussian textures between two or more samples, along optimal transport.",
+    inputs=(
+        Slot("sample", "First sample", "A photograph; crop a homogeneous region of it. The path begins here."),
+        Slot("other", "Further sample", "What to mix it with: the path ends here. Up to two more may follow."),
+    ),
+    params=MixParams,
+    references=(GAUSSIAN_MIXING, RANDOM_PHASE_TEXTURES, PERIODIC_PLUS_SMOOTH),
+    explanation=EXPLANATION,
+    check=check,
+    run=run,
+    outputs=OUTPUTS,
+    idle=idle,
+    most_pixels=WHOLE_IN_MEMORY,
+    more=FURTHER,
+    phase=True,
+)

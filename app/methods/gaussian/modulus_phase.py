@@ -1,0 +1,115 @@
+"""`modulus-phase`: the swap of Oppenheim and Lim."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from pydantic import Field
+
+from app.errors import InvalidInputError
+from app.methods.announced import shown_inputs, texture, views
+from app.methods.explanations.modulus_phase import EXPLANATION
+from app.methods.explanations.references import OPPENHEIM_LIM, RANDOM_PHASE_TEXTURES
+from app.methods.inputs import alike, refuse_infinite
+from app.methods.model import Context, Method, Picture, Size, Slot, Source
+from app.methods.output.pictures import crops, encode, log_modulus
+from app.methods.params import MAX_SEED, WHOLE_IN_MEMORY, StillParams
+from app.numbers import FAR
+from app.synthesis.modulus_phase import centred_phase, power, swap
+from app.synthesis.spot import centre
+
+
+class ModulusPhaseParams(StillParams):
+    """Parameters of the swap: those that all methods have. Nothing is drawn at random."""
+
+    width: int | None = Field(
+        None,
+        ge=1,
+        le=FAR,
+        title="Width",
+        description="Pixels of the texture; default: as the narrower crop. Both are centred.",
+    )
+    height: int | None = Field(
+        None,
+        ge=1,
+        le=FAR,
+        title="Height",
+        description="Pixels of the texture; default: as the lower crop. Both are centred.",
+    )
+    seed: int = Field(
+        0,
+        ge=0,
+        le=MAX_SEED,
+        title="Seed",
+        description="Start of the random numbers; none are drawn here, so it changes nothing.",
+    )
+
+
+def common_size(sizes: Sequence[Size]) -> tuple[int, int]:
+    """Width and height that both crops have."""
+    return min(size.width for size in sizes), min(size.height for size in sizes)
+
+
+def check(sizes: Sequence[Size], params: ModulusPhaseParams) -> None:
+    """Refuse a size beyond that of either crop."""
+    for name, most in zip(("width", "height"), common_size(sizes), strict=True):
+        asked = getattr(params, name)
+        if asked and asked > most:
+            raise InvalidInputError(
+                f"Modulus and phase are swapped pixel for pixel, so the {name} can be at most that of the smaller "
+                f"crop, {most} pixels, and {asked} is asked for: take larger crops, or a smaller {name}.",
+                f"parameters.{name}",
+            )
+
+
+def run(sources: Sequence[Source], params: ModulusPhaseParams, context: Context) -> Iterator[Picture]:
+    """Both swapped pictures; then modulus and phase of each crop."""
+    sizes = [source.size for source in sources]
+    check(sizes, params)
+    refuse_infinite(sources)
+    width, height = common_size(sizes)
+    width, height = params.width or width, params.height or height
+    peak = sources[0].peak
+    images = [centre(pixels, height, width) for pixels in alike(sources)]
+    one, other = swap(images[0], images[1], context.threads, context.between(0, 0.5))
+    yield encode("texture", "Modulus of the first, phase of the second", one, peak, context, kind="texture")
+    context.progress("swap", 0.55)
+    yield encode("other", "Modulus of the second, phase of the first", other, peak, context, kind="texture")
+    context.progress("crops", 0.6)
+    yield from crops(sources, context)
+    for number, image in enumerate(images):
+        which, suffix = ("first", "") if number == 0 else ("second", "-2")
+        context.progress("spectra", 0.65 + 0.15 * number)
+        squares = power(image.transpose(2, 0, 1), context.threads)
+        yield log_modulus(f"modulus{suffix}", f"Log-modulus of the {which}", squares, width, context)
+        context.progress("spectra", 0.7 + 0.15 * number)
+        phase = centred_phase(image, context.threads) / np.float32(2 * np.pi) + np.float32(0.5)
+        yield encode(f"phase{suffix}", f"Phase of the {which}, black −π to white π", phase, 1, context)
+    context.progress("spectra", 1.0)
+
+
+MODULUS_PHASE = Method(
+    name="modulus-phase",
+    title="Swap of modulus and phase",
+    summary="The Fourier modulus of one picture with the phase of another, both ways.",
+    inputs=(
+        Slot("modulus", "Modulus", "A photograph, of which the first picture takes the Fourier modulus."),
+        Slot("phase", "Phase", "A photograph, of which the first picture takes the phase."),
+    ),
+    params=ModulusPhaseParams,
+    references=(OPPENHEIM_LIM, RANDOM_PHASE_TEXTURES),
+    explanation=EXPLANATION,
+    check=check,
+    run=run,
+    outputs=(
+        texture(),
+        texture("other"),
+        *shown_inputs(2, least=2),
+        *views("modulus", deep=False),
+        *views("phase"),
+        *views("modulus-2", deep=False),
+        *views("phase-2"),
+    ),
+    most_pixels=WHOLE_IN_MEMORY,
+    size=common_size,
+    toroidal=lambda params: False,
+)

@@ -1,0 +1,187 @@
+"""What RPN and ADSN have in common as methods: parameters, checks, and the pictures they give back."""
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field as Option
+
+from app.errors import InvalidInputError
+from app.images.png import PngWriter
+from app.methods.announced import shown_inputs, texture, views
+from app.methods.gaussian.params import SpotParams
+from app.methods.inputs import refuse_infinite, refuse_other_size
+from app.methods.model import Context, Picture, Size, Source
+from app.methods.output.pictures import log_modulus
+from app.methods.params import ADD_SMOOTH, ADVANCED
+from app.synthesis.field import Field, Noise, row_blocks
+from app.synthesis.levels import Extent, Levels
+from app.synthesis.modulus_phase import power
+from app.synthesis.periodic import smooth_planes
+from app.synthesis.spot import centre, make_spot
+from app.synthesis.team import Team
+
+
+class RandomPhaseParams(SpotParams):
+    """Parameters of RPN and ADSN."""
+
+    phase: Literal["add", "replace"] = Option(
+        "add",
+        title="Phase",
+        description="'add' shifts the phases of all colours by the same random amount and keeps the colours right; "
+        "'replace' gives all colours one common phase (the literature's “wrong RPN”), to show the false colours that "
+        "come of it.",
+        json_schema_extra=ADVANCED,
+    )
+    range: Literal["clip", "stretch"] = Option(
+        "clip",
+        title="Values out of range",
+        description="What becomes of values darker than black or brighter than white: 'clip' cuts them off; 'stretch' "
+        "maps all values, the same way in every colour, so that the extreme ones just fit.",
+        json_schema_extra=ADVANCED,
+    )
+    periodic: bool = Option(
+        True,
+        title="Periodic component",
+        description="Take the jumps between opposite borders out of the crop first, as the articles do. Without this "
+        "they come back as a cross of streaks: turn it off to see what it is for.",
+        json_schema_extra=ADVANCED,
+    )
+    add_smooth: bool = ADD_SMOOTH
+
+
+def check(sizes: Sequence[Size], params: RandomPhaseParams) -> None:
+    """Refuse what cannot run: the smooth component has the crop's size and no other, and must have been taken out."""
+    if params.add_smooth and not params.periodic:
+        raise InvalidInputError(
+            "The smooth component is part of the crop as long as the periodic component is not taken: turn “Periodic "
+            "component” on to add it, or leave it out.",
+            "parameters.add_smooth",
+        )
+    size = sizes[0]
+    width, height = params.width or size.width, params.height or size.height
+    if params.add_smooth:
+        refuse_other_size(size, width, height)
+
+
+class _Run:
+    """One run: makes its pictures one by one."""
+
+    def __init__(self, source: Source, params: RandomPhaseParams, context: Context, team: Team, rayleigh: bool) -> None:
+        self._source, self._params, self._context, self._team = source, params, context, team
+        self._height, self._width = params.height or source.pixels.shape[0], params.width or source.pixels.shape[1]
+        self._noise = Noise(
+            self._height,
+            self._width,
+            seed=params.seed,
+            rayleigh=rayleigh,
+            phase=params.phase,
+            alpha=params.alpha,
+            window=params.window,
+            periodic=params.periodic,
+            add_smooth=params.add_smooth,
+        )
+        self._peak = 2**context.depth - 1
+
+    def pictures(self) -> Iterator[Picture]:
+        field = self._field({"spot": 0.1, "random phase": 0.4, "range": 0.55, "texture": 0.8}).randomise()
+        mean = field.mean
+        yield self._texture(field)
+        del field
+        h = self._source.pixels
+        yield self._picture("crop", "Crop", h.transpose(2, 0, 1), 0.82)
+        self._context.progress("periodic", 0.82)
+        h = centre(h, self._height, self._width)
+        smooth = smooth_planes(h, self._context.threads)
+        p = np.empty_like(smooth)
+        np.subtract(h.transpose(2, 0, 1), smooth, out=p)
+        yield self._picture("periodic", "Periodic component", p, 0.84)
+        smooth += mean.astype(np.float32)[:, None, None]
+        yield self._picture("smooth", "Smooth component, the mean added", smooth, 0.86)
+        del smooth
+        if not self._params.periodic:
+            p[:] = h.transpose(2, 0, 1)
+        self._context.progress("input-spectrum", 0.86)
+        squares = power(p, self._context.threads)  # before the spot, which takes p's place
+        if p.shape[1:] == (self._height, self._width):
+            yield self._picture("spot", "Spot", p, 0.88)
+        else:
+            spot = make_spot(p, mean, self._height, self._width, self._params.alpha, self._params.window)
+            yield self._write("spot", "Extended spot", self._height, self._width, spot.rows, 0.88)
+            del spot
+        del p
+        title = "Log-modulus of the periodic component" if self._params.periodic else "Log-modulus of the crop"
+        yield log_modulus("input-spectrum", title, squares, h.shape[1], self._context)
+        squares = self._field({"spot": 0.92, "output-spectrum": 0.99}, 0.9, "output-spectrum").power()
+        yield log_modulus("output-spectrum", "Log-modulus of the texture", squares, self._width, self._context)
+        self._context.progress("output-spectrum", 1.0)
+
+    def _texture(self, field: Field) -> Picture:
+        low, high = 0.0, float(self._source.peak)
+        if self._params.range == "stretch":
+            extent = Extent(self._source.peak)
+            field.emit(extent, "range")
+            low, high = extent.low, extent.high
+        writer = PngWriter(self._width, self._height, len(field.mean), self._context.depth)
+        field.emit(Levels(writer.write, len(field.mean), low, high, self._peak))
+        return Picture("texture", "Texture", self._width, self._height, writer.finish(), "texture")
+
+    def _field(self, ends: dict[str, float], start: float = 0.0, said: str | None = None) -> Field:
+        """The noise's field; each of its stages goes from the end of the one before to its own in ``ends``.
+
+        ``said`` is what they are all called in the progress; by default each has its own name.
+        """
+        begins = dict(zip(ends, [start, *ends.values()], strict=False))
+
+        def progress(stage: str, part: float) -> None:
+            self._context.progress(said or stage, begins[stage] + part * (ends[stage] - begins[stage]))
+
+        return Field(self._source.pixels, self._noise, self._team, progress)
+
+    def _picture(self, name: str, title: str, values: NDArray[np.float32], end: float) -> Picture:
+        height, width = values.shape[1:]
+        return self._write(name, title, height, width, lambda first, last: values[:, first:last].copy(), end)
+
+    def _write(
+        self,
+        name: str,
+        title: str,
+        height: int,
+        width: int,
+        rows: Callable[[int, int], NDArray[np.float32]],
+        end: float,
+    ) -> Picture:
+        """Write a picture of float rows (C, n, W) in the sample's range, cut off outside it."""
+        writer = PngWriter(width, height, self._source.pixels.shape[2], self._context.depth)
+        levels = Levels(writer.write, writer.channels, 0, self._source.peak, self._peak)
+
+        def write(block: tuple[int, int]) -> None:
+            levels(block[0], rows(*block))
+
+        self._team.run(write, row_blocks(height), lambda part: self._context.progress(name, end - 0.02 * (1 - part)))
+        return Picture(name, title, width, height, writer.finish())
+
+
+def run(sources: Sequence[Source], params: RandomPhaseParams, context: Context, *, rayleigh: bool) -> Iterator[Picture]:
+    """The texture, then the steps that lead to it."""
+    source = sources[0]
+    check([source.size], params)
+    refuse_infinite(sources)
+    with Team(context.threads) as team:
+        yield from _Run(source, params, context, team, rayleigh).pictures()
+
+
+def toroidal(params: RandomPhaseParams) -> bool:
+    """Whether the texture tiles: the smooth component does not."""
+    return not params.add_smooth
+
+
+OUTPUTS = (
+    texture(),
+    *shown_inputs(),
+    *views("periodic", "smooth", of=()),
+    *views("spot", of=("alpha", "window", "periodic")),
+    *views("input-spectrum", of=("periodic",), deep=False),
+    *views("output-spectrum", of=("alpha", "window", "periodic", "add_smooth"), deep=False),
+)

@@ -1,0 +1,100 @@
+"""`rayleigh`: the modulus made noisy, the phase kept."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from app.errors import InvalidInputError
+from app.methods.announced import shown_inputs, texture, views
+from app.methods.explanations.rayleigh import EXPLANATION
+from app.methods.explanations.references import PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
+from app.methods.inputs import INPUTS, refuse_infinite
+from app.methods.model import Context, Fact, Method, Picture, Progress, Size, Source
+from app.methods.output.pictures import Real, crops, encode, log_modulus
+from app.methods.params import WHOLE_IN_MEMORY, StillParams
+from app.synthesis.field import Noise, synthesize
+from app.synthesis.modulus_phase import power
+from app.synthesis.periodic import periodic_component
+from app.synthesis.rayleigh import rayleigh
+from app.synthesis.spot import centre
+
+
+def check(sizes: Sequence[Size], params: StillParams) -> None:
+    """Refuse a size beyond the crop's."""
+    for name, asked, most in (("width", params.width, sizes[0].width), ("height", params.height, sizes[0].height)):
+        if asked and asked > most:
+            raise InvalidInputError(
+                f"The phase of the crop is kept, so the {name} can be at most the crop's own, {most} pixels, and "
+                f"{asked} is asked for: take a larger crop, or a smaller {name}.",
+                f"parameters.{name}",
+            )
+
+
+def run(sources: Sequence[Source], params: StillParams, context: Context) -> Iterator[Picture]:
+    """The crop under the noise; then its random phase noise, without and with the same noise."""
+    source = sources[0]
+    check([source.size], params)
+    refuse_infinite(sources)
+    h, peak = source.pixels, source.peak
+    height, width = params.height or h.shape[0], params.width or h.shape[1]
+
+    progress = context.between(0, 0.25)
+    z = rayleigh(h, height, width, seed=params.seed, threads=context.threads, progress=progress)
+    context.progress("periodic", 0.25)
+    p = periodic_component(centre(h, height, width), context.threads)
+    context.progress("correlation", 0.3)
+    fact = Fact("correlation", "Correlation with the periodic component", _correlation(p, z))
+    yield encode("texture", "Rayleigh noise on the modulus", z, peak, context, kind="texture", facts=(fact,))
+    context.progress("pictures", 0.33)
+    yield from crops(sources, context)
+    yield encode("periodic", "Periodic component", p, peak, context)
+    for name, title, begin in (("rpn", "RPN of the crop", 0.35), ("adsn", "The same with Rayleigh noise: ADSN", 0.6)):
+        noise = Noise(height, width, seed=params.seed, rayleigh=name == "adsn")
+        progress = _as_one_stage(name, context.between(begin, begin + 0.25))
+        texture = synthesize(h, noise, context.threads, progress)
+        yield encode(name, title, texture, peak, context, kind="texture")
+    for name, title, image, done in (
+        ("input-spectrum", "Log-modulus of the periodic component", p, 0.9),
+        ("output-spectrum", "Log-modulus with Rayleigh noise", z, 0.95),
+    ):
+        context.progress(name, done)
+        yield log_modulus(name, title, power(image.transpose(2, 0, 1), context.threads), width, context)
+    context.progress("output-spectrum", 1.0)
+
+
+def _as_one_stage(name: str, progress: Progress) -> Progress:
+    """The stages of `synthesize` as one."""
+    stages = ("spot", "random phase", "texture")
+    return lambda stage, part: progress(name, (stages.index(stage) + part) / len(stages))
+
+
+def _correlation(p: Real, z: Real) -> float:
+    """Over all pixels and channels, each channel about its own mean; 1 for an image without contrast."""
+    products = np.zeros(3)
+    for channel in range(p.shape[2]):
+        one, other = (image[:, :, channel] - float(image[:, :, channel].mean(dtype=np.float64)) for image in (p, z))
+        products += [np.mean(a * b, dtype=np.float64) for a, b in ((one, other), (one, one), (other, other))]
+    scale = float(np.sqrt(products[1] * products[2]))
+    return float(products[0]) / scale if scale else 1.0
+
+
+RAYLEIGH = Method(
+    name="rayleigh",
+    title="Rayleigh noise on the modulus",
+    summary="Keeps the phase of the crop and multiplies its Fourier modulus by Rayleigh noise.",
+    inputs=INPUTS,
+    params=StillParams,
+    references=(RANDOM_PHASE_TEXTURES, PERIODIC_PLUS_SMOOTH),
+    explanation=EXPLANATION,
+    check=check,
+    run=run,
+    outputs=(
+        texture(),
+        *shown_inputs(),
+        *views("periodic"),
+        texture("rpn"),
+        texture("adsn"),
+        *views("input-spectrum", "output-spectrum", deep=False),
+    ),
+    most_pixels=WHOLE_IN_MEMORY,
+)

@@ -1,0 +1,116 @@
+"""`video-rpn`: random phase noise in three dimensions."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.methods.announced import FILMS, SHOWN_CLIP, views
+from app.methods.explanations.references import GAUSSIAN_MIXING, IPOL_RPN, PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
+from app.methods.explanations.video_rpn import EXPLANATION
+from app.methods.gaussian.params import SpotParams, not_extended
+from app.methods.model import Context, Fact, Method, Picture, Progress, Size, Slot, Source
+from app.methods.output.films import crop_film, film_memory, texture_film
+from app.methods.output.pictures import Real, encode, log_modulus
+from app.methods.params import MovingParams
+from app.synthesis.team import Team
+from app.synthesis.video_rpn import MovingField
+
+CUBES = ("crop-cube", "cube")
+FRAMES, ROWS = 16, 24  # of floats: averages, powers and the like; rows of all frames, which the threads have in hand
+
+
+class VideoRpnParams(SpotParams, MovingParams):
+    """Parameters of random phase noise in three dimensions."""
+
+
+def check(sizes: Sequence[Size], params: VideoRpnParams) -> None:
+    """Nothing is refused: any clip has a spectrum."""
+
+
+def memory(sizes: Sequence[Size], params: VideoRpnParams) -> int:
+    """The clip, its half spectrum, that of the texture where the two differ, some frames, and the encoders."""
+    clip = sizes[0]
+    frames, height, width = shape = _shape(clip, params)
+    inside = min(frames, clip.frames), min(height, clip.height), min(width, clip.width)
+    needed = clip.channels * clip.frames * clip.height * clip.width + _spectrum_bytes(inside, clip.channels)
+    if inside != shape:
+        needed += _spectrum_bytes(shape, clip.channels)
+    wide, high = max(width, clip.width), max(height, clip.height)
+    floats = clip.channels * wide * (FRAMES * high + ROWS * max(frames, clip.frames))
+    return needed + 4 * floats + film_memory(wide, high, clip.channels)
+
+
+def _spectrum_bytes(shape: tuple[int, int, int], channels: int) -> int:
+    frames, height, width = shape
+    return channels * frames * height * (width // 2 + 1) * np.dtype(np.complex64).itemsize
+
+
+def _shape(clip: Size, params: VideoRpnParams) -> tuple[int, int, int]:
+    return params.frames or clip.frames, params.height or clip.height, params.width or clip.width
+
+
+def run(sources: Sequence[Source], params: VideoRpnParams, context: Context) -> Iterator[Picture]:
+    """The texture's files, then what was measured on the way, then the crop's."""
+    source = sources[0]
+    assert source.film is not None
+    film = source.film.frames
+    shape = _shape(source.size, params)
+    with Team(context.threads) as team:
+        field = MovingField(
+            film,
+            shape,
+            seed=params.seed,
+            alpha=params.alpha,
+            profile=params.window,
+            team=team,
+            progress=context.between(0, 0.15),
+        )
+        yield from texture_film(
+            _reported(field, context.between(0.15, 0.6)),
+            width=shape[2],
+            height=shape[1],
+            channels=film.shape[3],
+            count=shape[0],
+            rate=source.film.rate,
+            context=replace(context, progress=context.between(0.6, 0.7)),
+        )
+    yield from _views(film, field, context)
+    del field  # its spectrum, before the encoders take their memory again
+    yield from crop_film(source, replace(context, progress=context.between(0.72, 1.0)))
+    context.progress("crop", 1.0)
+
+
+def _reported(field: MovingField, progress: Progress) -> Iterator[Real]:
+    for index, frame in enumerate(field.frames()):
+        progress("texture", index / field.shape[0])
+        yield frame
+
+
+def _views(film: NDArray[np.uint8], field: MovingField, context: Context) -> Iterator[Picture]:
+    """The average frame, and two sections through the block of the squared moduli."""
+    context.progress("spectrum", 0.7)
+    still = Fact("still", "Part of the texture's contrast that stands still", 100 * field.still, "% of the variance")
+    average = film.mean(axis=0, dtype=np.float64).astype(np.float32)
+    yield encode("average", "Average frame of the crop", average, 255, context, facts=(still,))
+    _, _, width = field.shape
+    yield log_modulus("spectrum", "Log-modulus over space, all times together", field.power, width, context)
+    title = "Log-modulus over time (downwards) and across"
+    yield log_modulus("spectrum-in-time", title, field.power_in_time, width, context)
+
+
+VIDEO_RPN = Method(
+    name="video-rpn",
+    title="Random phase noise in three dimensions (video RPN)",
+    summary="Keeps the Fourier modulus of a clip over time and space and draws its phase at random.",
+    inputs=(Slot("clip", "Clip", "A video; crop a rectangle and a time in which all looks alike.", moving=True),),
+    params=VideoRpnParams,
+    references=(RANDOM_PHASE_TEXTURES, GAUSSIAN_MIXING, IPOL_RPN, PERIODIC_PLUS_SMOOTH),
+    explanation=EXPLANATION,
+    check=check,
+    run=run,
+    outputs=(*FILMS, *views("average", of=()), *views("spectrum", "spectrum-in-time", deep=False), *SHOWN_CLIP),
+    idle=not_extended,
+    memory=memory,
+)

@@ -1,0 +1,63 @@
+"""Parameters that several methods share."""
+
+from pydantic import BaseModel, ConfigDict, Field
+from pydantic.config import JsonDict
+
+from app.numbers import FAR
+
+ADVANCED: JsonDict = {"advanced": True}
+WHOLE_IN_MEMORY = 1 << 24  # pixels; what holds several float pictures of the texture's size then stays within 1.5 GB
+MAX_SEED = 2**53 - 1  # the largest whole number that JSON readers in JavaScript keep exactly
+ADD_SMOOTH = Field(
+    False,
+    title="Add the smooth component",
+    description="Put the slow changes of light and colour across the crop, which are taken out before the synthesis, "
+    "back in afterwards. Only for a texture of the crop's own size; it then no longer tiles without a seam.",
+    json_schema_extra=ADVANCED,
+)
+
+
+class StillParams(BaseModel):
+    """Parameters that every still-image method has."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    width: int | None = Field(
+        None, ge=1, le=FAR, title="Width", description="Pixels of the texture; default: as the crop."
+    )
+    height: int | None = Field(
+        None, ge=1, le=FAR, title="Height", description="Pixels of the texture; default: as the crop."
+    )
+    seed: int = Field(
+        0,
+        ge=0,
+        le=MAX_SEED,
+        title="Seed",
+        description="Start of the random numbers: the same seed gives the same texture, another seed another one.",
+    )
+
+
+class MovingParams(StillParams):
+    """Parameters that every method of moving textures has besides."""
+
+    frames: int | None = Field(
+        None, ge=2, le=FAR, title="Frames", description="Frames of the video; default: as the clip."
+    )
+
+
+class LoopParams(MovingParams):
+    """Parameters of those whose videos can play in a loop or not."""
+
+    loop: bool = Field(
+        True,
+        title="Loop",
+        description="The last frame continues in the first, so that the video plays for ever without a jump.",
+    )
+
+
+class SeamlessParams(LoopParams):
+    """Parameters of those whose frames can tile or not besides."""
+
+    tileable: bool = Field(
+        True, title="Tileable", description="Opposite edges of every frame meet, so that it tiles without a seam."
+    )

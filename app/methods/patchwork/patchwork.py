@@ -1,0 +1,169 @@
+"""`patchwork`: random patches of the crop, joined invisibly."""
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from app.images.png import PngWriter
+from app.methods.announced import shown_inputs, texture, views
+from app.methods.explanations.patchwork import EXPLANATION
+from app.methods.explanations.references import PATCHWORK as REPORT
+from app.methods.inputs import INPUTS, refuse_infinite
+from app.methods.model import Context, Fact, Method, Picture, Progress, Size, Source
+from app.methods.output.pictures import coordinate_colours, crops, encode
+from app.methods.params import ADVANCED, StillParams
+from app.methods.patchwork.limits import (
+    BYTES_OF_CELL,
+    LEAST_GRID,
+    Reached,
+    idle_reach,
+    reach,
+    refuse_long_sum,
+    refuse_small,
+    summed,
+)
+from app.methods.patchwork.pictures import cell_colours
+from app.synthesis.cells import Cells, jittered_cells, least_sample
+from app.synthesis.field import row_blocks
+from app.synthesis.levels import Levels
+from app.synthesis.patchwork import BAND, TILE, Patchwork, band, painted
+from app.synthesis.team import Team
+from app.synthesis.unbounded_cells import Reach, joined_cells
+from app.synthesis.work import Work
+
+BANDS = 4  # that are in work at once
+DIMMED = np.float32(0.25)
+
+Real = NDArray[np.float32]
+Rows = Callable[[int, int, Callable[[], None]], Real]
+
+
+class PatchworkParams(StillParams):
+    """Parameters of patchwork."""
+
+    grid: int = Field(
+        64,
+        ge=LEAST_GRID,
+        le=1024,
+        title="Grid",
+        description="Pixels from one patch to the next, about. What is smaller than a patch is kept whole; a crop of "
+        "many times the grid gives patches more places to come from. At sharpness 6 it must be 3½ times the grid.",
+    )
+    sharpness: float = Field(
+        6,
+        ge=1,
+        le=40,
+        title="Sharpness f",
+        description="How suddenly a patch gives way to its neighbour. The higher, the more suddenly, and the less of "
+        "the crop's border goes into joins; a very low one lets many patches overlap.",
+    )
+    blend: Literal["deviation", "feather", "sharp"] = Field(
+        "deviation",
+        title="Joins",
+        description="'deviation' keeps the standard deviation where patches overlap, and with it the contrast; "
+        "'feather' averages them, which is duller; 'sharp' cuts halfway between two centres. The last two are there to "
+        "see what the first is for.",
+        json_schema_extra=ADVANCED,
+    )
+    reach: Reach = reach("all")
+    tileable: bool = Field(
+        True,
+        title="Tileable",
+        description="Measure distances as on a torus, so that opposite borders meet and the texture tiles.",
+    )
+
+
+def check(sizes: Sequence[Size], params: PatchworkParams) -> None:
+    """Refuse a crop that does not hold every cell with its blend zone, whatever the seed."""
+    size = sizes[0]
+    width, height = params.width or size.width, params.height or size.height
+    refuse_small(size, params.grid, lambda grid: (least_sample(height, width, grid, params.sharpness),) * 2)
+    refuse_long_sum(params, height, width, tileable=params.tileable)
+
+
+def memory(sizes: Sequence[Size], params: PatchworkParams) -> int:
+    """The crop three times over with its margin, the cells, their weights, what is in work, and the file."""
+    size = sizes[0]
+    width, height = params.width or size.width, params.height or size.height
+    joined = Reached(params, height, width, params.tileable)
+    crop = 8 * size.channels * size.width * size.height + joined.sample_bytes(size, size.channels)
+    cells = BYTES_OF_CELL * (height // params.grid + 8) * (width // params.grid + 8) + joined.table_bytes
+    return crop + cells + BANDS * BAND * 4 * (size.channels + 6) * (width + TILE) + 2 * size.channels * width * height
+
+
+def run(sources: Sequence[Source], params: PatchworkParams, context: Context) -> Iterator[Picture]:
+    """The texture; then its cells, and where in the crop their sources lie."""
+    source = sources[0]
+    check([source.size], params)
+    refuse_infinite(sources)
+    h = source.pixels
+    height, width = params.height or h.shape[0], params.width or h.shape[1]
+    context.progress("cells", 0.0)
+    cells = jittered_cells(
+        height, width, grid=params.grid, sharpness=params.sharpness, tileable=params.tileable, seed=params.seed
+    )
+    context.progress("patches", 0.08)
+    cells = joined_cells(cells, "all" if summed(params) else "near", tileable=params.tileable)
+    made = Patchwork(h, cells, blend=params.blend, seed=params.seed)
+    sources_of = made.sources
+    with Team(context.threads) as team:
+
+        def streamed(rows: Rows, channels: int, peak: float, progress: Progress) -> bytes:
+            writer = PngWriter(width, height, channels, context.depth)
+            levels = Levels(writer.write, channels, 0, peak, 2**context.depth - 1)
+            work = Work(team, progress)
+            blocks = row_blocks(height, band(cells))
+            work.run("texture", lambda block: levels(block[0], rows(*block, work.alive)), blocks)
+            return writer.finish()
+
+        png = streamed(made.rows, h.shape[2], source.peak, context.between(0.1, 0.6))
+        fact = Fact("cells", "Cells", cells.count)
+        yield Picture("texture", "Texture", width, height, png, "texture", (fact,))
+        del made, png
+        context.progress("views", 0.6)
+        places = coordinate_colours(*h.shape[:2])
+        colours = cell_colours(cells, sources_of, places)
+        soft = params.blend != "sharp"
+
+        def paint(top: int, bottom: int, alive: Callable[[], None]) -> Real:
+            return painted(cells, colours, top, bottom, soft=soft, alive=alive)
+
+        png = streamed(paint, 3, 1, lambda stage, part: context.progress("views", 0.6 + 0.3 * part))
+        yield Picture("cells", "Cells, coloured by the place of their source", width, height, png)
+    yield _key(cells, sources_of, places, context)
+    yield from crops(sources, context)
+    context.progress("views", 1.0)
+
+
+def _key(cells: Cells, sources: NDArray[np.int64], places: Real, context: Context) -> Picture:
+    """The colours of the crop's places, dimmed where no cell shows them."""
+    height, width, _ = places.shape
+    top, bottom, left, right = (cells.cores + np.repeat(sources, 2, axis=1)).clip(0, [height, height, width, width]).T
+    corners = np.zeros((height + 1, width + 1), np.int64)
+    for y, x, sign in ((top, left, 1), (top, right, -1), (bottom, left, -1), (bottom, right, 1)):
+        np.add.at(corners, (y, x), sign)
+    shown = corners.cumsum(0).cumsum(1)[:-1, :-1] > 0
+    picture = np.where(shown[:, :, None], places, places * DIMMED)
+    fact = Fact("shown", "Part of the crop that cells show", 100 * float(shown.mean()), "%")
+    title = "Colours of the crop's places, dark where no cell shows them"
+    return encode("sources", title, picture, 1, context, facts=(fact,))
+
+
+PATCHWORK = Method(
+    name="patchwork",
+    title="Patchwork (random patches)",
+    summary="Lays random patches of the crop side by side, joined so that the joins cannot be seen.",
+    inputs=INPUTS,
+    params=PatchworkParams,
+    references=(REPORT,),
+    explanation=EXPLANATION,
+    check=check,
+    idle=idle_reach,
+    run=run,
+    outputs=(texture(), *views("cells", "sources"), *shown_inputs()),
+    toroidal=lambda params: params.tileable,
+    memory=memory,
+)

@@ -1,0 +1,164 @@
+"""`transfer`: a pattern rendered in patches of a texture."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from pydantic import Field
+
+from app.methods.announced import shown_inputs, texture, views
+from app.methods.explanations.references import PATCHWORK
+from app.methods.explanations.transfer import EXPLANATION
+from app.methods.inputs import alike, refuse_infinite
+from app.methods.model import Context, Method, Picture, Size, Slot, Source
+from app.methods.output.pictures import coordinate_colours, crops, encode
+from app.methods.params import WHOLE_IN_MEMORY, StillParams
+from app.methods.patchwork.limits import (
+    BYTES_OF_CELL,
+    LEAST_GRID,
+    RESCALE,
+    Reached,
+    idle_reach,
+    pattern_size,
+    reach,
+    refuse_long_search,
+    refuse_long_sum,
+    refuse_other_size,
+    refuse_small,
+    search_bytes,
+)
+from app.methods.patchwork.pictures import cell_colours, compared_pattern, match_facts
+from app.synthesis.cells import jittered_cells, least_sample
+from app.synthesis.field import row_blocks
+from app.synthesis.patchwork import painted
+from app.synthesis.team import Team
+from app.synthesis.transfer import rescaled, transfer
+from app.synthesis.unbounded_cells import Reach, joined_cells
+from app.synthesis.work import Work
+
+BYTES_OF_PATTERN = 8  # for each value, beside the search
+STAGES = {"matching": (0.05, 0.7), "averages": (0.7, 0.78), "texture": (0.78, 0.88)}
+
+
+class TransferParams(StillParams):
+    """Parameters of the texture transfer."""
+
+    grid: int = Field(
+        16,
+        ge=LEAST_GRID,
+        le=1024,
+        title="Grid",
+        description="Pixels from one patch to the next, about. Smaller patches follow the pattern more closely, larger "
+        "ones keep more of the texture. At sharpness 2 the texture must be five times the grid at least, and better "
+        "twenty times.",
+    )
+    sharpness: float = Field(
+        2,
+        ge=1,
+        le=40,
+        title="Sharpness f",
+        description="How suddenly a patch gives way to its neighbour: 2 blends them widely, as brush strokes do, 20 "
+        "cuts them like the pieces of a mosaic.",
+    )
+    candidates: int = Field(
+        200,
+        ge=0,
+        le=100_000,
+        title="Candidates",
+        description="How many places of the texture, drawn at random, are compared with each patch of the pattern; the "
+        "best is taken. More follow the pattern more closely, take longer, and repeat the same places more often. 0: "
+        "all places.",
+    )
+    rescale: bool = RESCALE
+    reach: Reach = reach("near")
+
+
+def check(sizes: Sequence[Size], params: TransferParams) -> None:
+    """Refuse another size than the pattern's, a texture that does not hold the patches, and too long a search."""
+    texture, pattern = sizes
+    refuse_other_size(pattern, params)
+    height, width = pattern.height, pattern.width
+    refuse_small(texture, params.grid, lambda grid: (least_sample(height, width, grid, params.sharpness),) * 2)
+    refuse_long_search(texture, pattern, params.grid, params.candidates)
+    refuse_long_sum(params, height, width, tileable=False)
+
+
+def memory(sizes: Sequence[Size], params: TransferParams) -> int:
+    """Both pictures, the search and the result."""
+    texture, pattern = sizes
+    channels, grid = max(texture.channels, pattern.channels), params.grid
+    cells = (pattern.width // grid + 8) * (pattern.height // grid + 8)
+    joined = Reached(params, pattern.height, pattern.width, tileable=False)
+    rendered = BYTES_OF_PATTERN * channels * pattern.width * pattern.height
+    held = search_bytes(texture, pattern) + joined.sample_bytes(texture, channels) + joined.table_bytes
+    return held + rendered + BYTES_OF_CELL * cells
+
+
+def run(sources: Sequence[Source], params: TransferParams, context: Context) -> Iterator[Picture]:
+    """The pattern in the texture, where its patches come from, their averages, and what they were compared with."""
+    check([source.size for source in sources], params)
+    refuse_infinite(sources)
+    texture, pattern = alike(sources)
+    peak = sources[0].peak
+    context.progress("cells", 0.0)
+    height, width, channels = pattern.shape
+    cells = jittered_cells(
+        height, width, grid=params.grid, sharpness=params.sharpness, tileable=False, seed=params.seed
+    )
+    if params.rescale:
+        pattern = rescaled(pattern, texture)
+    with Team(context.threads) as team:
+        made = transfer(
+            texture,
+            pattern,
+            cells,
+            reach=params.reach,
+            peak=peak,
+            candidates=params.candidates,
+            seed=params.seed,
+            work=Work(team, lambda stage, part: context.between(*STAGES[stage])(stage, part)),
+        )
+        facts = match_facts(made.matches, channels, peak)
+        yield encode("texture", "Texture", made.output, peak, context, kind="texture", facts=facts)
+        context.progress("cells", 0.9)
+        colours = cell_colours(cells, made.matches.places, coordinate_colours(*texture.shape[:2]))
+        picture = np.empty((height, width, 3), np.float32)
+        joined = joined_cells(cells, params.reach, tileable=False)
+        work = Work(team, context.between(0.9, 0.95))
+
+        def paint(rows: tuple[int, int]) -> None:
+            picture[slice(*rows)] = painted(joined, colours, *rows, alive=work.alive).transpose(1, 2, 0)
+
+        work.run("cells", paint, row_blocks(height))
+    yield encode("cells", "Cells, coloured by the place of their source", picture, 1, context)
+    context.progress("views", 0.96)
+    yield encode("average", "Averages of the patches", made.average, peak, context)
+    yield compared_pattern(pattern, params.rescale, peak, context)
+    yield from crops(sources, context)
+    context.progress("views", 1.0)
+
+
+TRANSFER = Method(
+    name="transfer",
+    title="Texture transfer (patchwork)",
+    summary="Renders a picture in patches of a texture, each chosen for being like the picture there.",
+    inputs=(
+        Slot("texture", "Texture", "What to render in: a painting, a bark, a wall. It needs lights and darks."),
+        Slot("pattern", "Pattern", "The picture to render; the result has its size."),
+    ),
+    params=TransferParams,
+    references=(PATCHWORK,),
+    explanation=EXPLANATION,
+    check=check,
+    idle=idle_reach,
+    run=run,
+    outputs=(
+        texture(),
+        *views("cells", "average"),
+        *views("pattern", of=("rescale",)),
+        *shown_inputs(2, least=2),
+    ),
+    size=pattern_size,
+    toroidal=lambda params: False,
+    most_pixels=WHOLE_IN_MEMORY,
+    memory=memory,
+)

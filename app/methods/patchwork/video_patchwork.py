@@ -1,0 +1,168 @@
+"""`video-patchwork`: random patches of a clip, over time and over space."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from app.methods.announced import FILMS, SHOWN_CLIP, views
+from app.methods.explanations.references import PATCHWORK
+from app.methods.explanations.video_patchwork import EXPLANATION
+from app.methods.model import Context, Method, Picture, Size, Slot, Source
+from app.methods.output.films import crop_film
+from app.methods.params import SeamlessParams
+from app.methods.patchwork.limits import (
+    LEAST_GRID,
+    Reached,
+    idle_reach,
+    reach,
+    refuse_long_frames,
+    refuse_small,
+    summed,
+)
+from app.methods.patchwork.pictures import (
+    IN_TIME,
+    INTERVAL,
+    Painter,
+    Real,
+    average_picture,
+    cells_cube,
+    film_bytes,
+    frames_bytes,
+    patchwork_bytes,
+    refuse_short,
+    sharpness,
+    textured,
+)
+from app.synthesis.cells import jittered_cells, least_sample, random
+from app.synthesis.transitions import Transitions, longest_interval
+from app.synthesis.unbounded_cells import Reach, joined_cells, terms
+from app.synthesis.video_cells import FixedCells, source_colours
+from app.synthesis.video_mosaic import Mosaic, held_bytes, needed, products
+from app.synthesis.video_patchwork import Clip, VideoPatchwork
+
+
+class VideoPatchworkParams(SeamlessParams):
+    """Parameters of the video patchwork."""
+
+    grid: int = Field(
+        64,
+        ge=LEAST_GRID,
+        le=1024,
+        title="Grid",
+        description="Pixels from one patch to the next, about. What is smaller than a patch is kept whole; the crop "
+        "must hold a patch with its soft edges, at sharpness 6 about 3½ grids a side.",
+    )
+    interval: int = INTERVAL
+    arrangement: Literal["fixed", "mosaic"] = Field(
+        "fixed",
+        title="Arrangement",
+        description="'fixed': the same patches in all frames, each with transitions of its own in time, so that what "
+        "stands still goes on standing still; 'mosaic': patches end in time as they do in space, so that everything "
+        "comes and goes.",
+    )
+    sharpness: float = sharpness(6)
+    reach: Reach = reach("all")
+
+
+def check(sizes: Sequence[Size], params: VideoPatchworkParams) -> None:
+    """Refuse a crop or a clip that does not hold the patches."""
+    size, (frames, height, width) = sizes[0], _shape(sizes[0], params)
+    if params.arrangement == "mosaic":
+        refuse_small(size, params.grid, lambda grid: (needed(width, grid), needed(height, grid)))
+        most = next(interval for interval in range(frames, 0, -1) if needed(frames, interval) <= size.frames)
+    else:
+        refuse_small(size, params.grid, lambda grid: (least_sample(height, width, grid, params.sharpness),) * 2)
+        most = longest_interval(size.frames, frames, params.loop)
+    refuse_short(size, frames, params.interval, most)
+    if summed(params):
+        if params.arrangement == "mosaic":
+            work = products((frames, height, width), params.grid, params.interval)
+        else:
+            work = terms(height, width, params.grid, params.sharpness, params.tileable)
+        refuse_long_frames(work, height, width, frames)
+
+
+def memory(sizes: Sequence[Size], params: VideoPatchworkParams) -> int:
+    """The clip, as it came and as planes, the weights of the cells, and some frames."""
+    size, (_, height, width) = sizes[0], _shape(sizes[0], params)
+    if params.arrangement == "fixed":
+        return patchwork_bytes(size, Reached(params, height, width, params.tileable))
+    return 2 * film_bytes(size) + held_bytes(height, width) + frames_bytes(size, height, width)
+
+
+def run(sources: Sequence[Source], params: VideoPatchworkParams, context: Context) -> Iterator[Picture]:
+    """The video texture, its cells over time, the average image, and the crop."""
+    (source,) = sources
+    check([source.size], params)
+    assert source.film is not None
+    film, shape = source.film.frames, _shape(source.size, params)
+    context.progress("cells", 0)
+    frame, painter = (_mosaic if params.arrangement == "mosaic" else _fixed)(film, shape, params)
+    yield from textured(frame, shape, source, context)
+    yield cells_cube(painter, shape, replace(context, progress=context.between(0.86, 0.9)))
+    yield average_picture(film.mean(0, np.float32), context)
+    yield from crop_film(source, replace(context, progress=context.between(0.9, 1)))
+    context.progress("crop", 1)
+
+
+def _shape(size: Size, params: VideoPatchworkParams) -> tuple[int, int, int]:
+    return params.frames or size.frames, params.height or size.height, params.width or size.width
+
+
+def _fixed(
+    film: NDArray[np.uint8], shape: tuple[int, int, int], params: VideoPatchworkParams
+) -> tuple[Callable[[int], Real], Painter]:
+    """The two-stage synthesis: what makes a frame, and what paints its cells."""
+    frames, height, width = shape
+    cells = jittered_cells(
+        height, width, grid=params.grid, sharpness=params.sharpness, tileable=params.tileable, seed=params.seed
+    )
+    sources = cells.sources(film.shape[1], film.shape[2], params.seed)
+    cells = joined_cells(cells, params.reach, tileable=params.tileable)
+    transitions = Transitions(
+        cells.count, len(film), frames, params.interval, loop=params.loop, rng=random(params.seed, IN_TIME)
+    )
+    clip = Clip(film, cells.margin(sources, film.shape[1], film.shape[2]))
+    mean = film.mean((0, 1, 2), np.float64).astype(np.float32)
+    made = VideoPatchwork(clip, cells, sources, transitions, np.tile(mean, (cells.count, 1)))
+    return made.frame, lambda window: FixedCells(cells, window, sources, transitions, film.shape[:3]).painted
+
+
+def _mosaic(
+    film: NDArray[np.uint8], shape: tuple[int, int, int], params: VideoPatchworkParams
+) -> tuple[Callable[[int], Real], Painter]:
+    """The three-dimensional mosaic: what makes a frame, and what paints its cells."""
+    mosaic = Mosaic(
+        Clip(film).planes,
+        shape,
+        grid=params.grid,
+        interval=params.interval,
+        sharpness=params.sharpness,
+        loop=params.loop,
+        tileable=params.tileable,
+        rng=random(params.seed, IN_TIME),
+        reach=params.reach,
+    )
+    colours = source_colours(mosaic.sources, film.shape[:3])
+    return mosaic.frame, lambda window: lambda number: mosaic.painted(number, window, colours)
+
+
+VIDEO_PATCHWORK = Method(
+    name="video-patchwork",
+    title="Video patchwork",
+    summary="Joins random patches of a clip, in time and in space, so that the joins keep its deviation.",
+    inputs=(Slot("clip", "Clip", "The video whose texture is synthesised.", moving=True),),
+    params=VideoPatchworkParams,
+    references=(PATCHWORK,),
+    explanation=EXPLANATION,
+    check=check,
+    idle=idle_reach,
+    run=run,
+    outputs=(*FILMS, *views("cells", deep=False), *views("average", of=()), *SHOWN_CLIP),
+    toroidal=lambda params: params.tileable,
+    memory=memory,
+)

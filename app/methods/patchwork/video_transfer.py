@@ -1,0 +1,189 @@
+"""`video-transfer`: a picture rendered in the patches of a clip."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from app.methods.announced import FILMS, SHOWN_CLIP, views
+from app.methods.explanations.references import PATCHWORK
+from app.methods.explanations.video_transfer import EXPLANATION
+from app.methods.inputs import refuse_infinite
+from app.methods.model import Context, Method, Picture, Size, Slot, Source
+from app.methods.output.films import crop_film
+from app.methods.output.pictures import encode
+from app.methods.params import LoopParams
+from app.methods.patchwork.limits import (
+    LEAST_GRID,
+    RESCALE,
+    Reached,
+    idle_reach,
+    pattern_size,
+    reach,
+    refuse_long_frames,
+    refuse_long_search,
+    refuse_other_size,
+    refuse_small,
+    search_bytes,
+    summed,
+)
+from app.methods.patchwork.pictures import (
+    IN_TIME,
+    INTERVAL,
+    Real,
+    average_picture,
+    cells_cube,
+    compared_pattern,
+    patchwork_bytes,
+    refuse_short,
+    sharpness,
+    textured,
+)
+from app.synthesis.cell_match import match_cells
+from app.synthesis.cells import Cells, jittered_cells, least_sample, random
+from app.synthesis.luminance import luminance
+from app.synthesis.team import Team
+from app.synthesis.transfer import rescaled
+from app.synthesis.transitions import Transitions, longest_interval
+from app.synthesis.unbounded_cells import Reach, joined_cells, terms
+from app.synthesis.video_cells import FixedCells
+from app.synthesis.video_patchwork import Clip, VideoPatchwork
+from app.synthesis.work import Work
+
+PEAK = 255  # of a clip's values
+
+
+class VideoTransferParams(LoopParams):
+    """Parameters of the video transfer."""
+
+    grid: int = Field(
+        16,
+        ge=LEAST_GRID,
+        le=1024,
+        title="Grid",
+        description="Pixels from one patch to the next, about. Smaller patches follow the pattern more closely, larger "
+        "ones keep more of the clip's texture.",
+    )
+    interval: int = INTERVAL
+    candidates: int = Field(
+        200,
+        ge=0,
+        le=100_000,
+        title="Candidates",
+        description="Among how many places of the clip, drawn at random, the one that is most like the pattern is "
+        "taken for each patch; 0: among all. More follow the pattern more closely and repeat places more often.",
+    )
+    rescale: bool = RESCALE
+    sharpness: float = sharpness(2)
+    reach: Reach = reach("near")
+
+
+def check(sizes: Sequence[Size], params: VideoTransferParams) -> None:
+    """Refuse a size that is not the pattern's, and a clip that does not hold the patches."""
+    clip, pattern = sizes
+    refuse_other_size(pattern, params)
+    frames, height, width = _shape(sizes, params)
+    refuse_small(clip, params.grid, lambda grid: (least_sample(height, width, grid, params.sharpness),) * 2)
+    refuse_short(clip, frames, params.interval, longest_interval(clip.frames, frames, params.loop))
+    refuse_long_search(clip, pattern, params.grid, params.candidates)
+    if summed(params):
+        refuse_long_frames(terms(height, width, params.grid, params.sharpness, tileable=False), height, width, frames)
+
+
+def memory(sizes: Sequence[Size], params: VideoTransferParams) -> int:
+    """That of the video patchwork, and the search."""
+    clip, pattern = sizes
+    joined = Reached(params, pattern.height, pattern.width, tileable=False)
+    return patchwork_bytes(clip, joined) + search_bytes(replace(clip, frames=1), pattern)
+
+
+def run(sources: Sequence[Source], params: VideoTransferParams, context: Context) -> Iterator[Picture]:
+    """The pattern as a video texture, its cells over time, the average image, the clip and the pattern."""
+    clip, pattern = sources
+    sizes = [source.size for source in sources]
+    check(sizes, params)
+    refuse_infinite(sources)
+    assert clip.film is not None
+    film, shape = clip.film.frames, _shape(sizes, params)
+    context.progress("cells", 0)
+    cells = jittered_cells(*shape[1:], grid=params.grid, sharpness=params.sharpness, tileable=False, seed=params.seed)
+    average = film.mean(0, np.float32)
+    wanted = _with_channels(pattern.pixels * np.float32(PEAK / pattern.peak), average.shape[2])
+    if params.rescale:
+        wanted = rescaled(wanted, average)
+    places = _matched(average, wanted, cells, params, replace(context, progress=context.between(0, 0.2)))
+    transitions = Transitions(
+        cells.count, len(film), shape[0], params.interval, loop=params.loop, rng=random(params.seed, IN_TIME)
+    )
+    cells = joined_cells(cells, params.reach, tileable=False)
+    margin = cells.margin(places, *film.shape[1:3])
+    made = VideoPatchwork(Clip(film, margin), cells, places, transitions)
+    yield from textured(made.frame, shape, clip, replace(context, progress=context.between(0.2, 0.86)))
+    yield cells_cube(
+        lambda window: FixedCells(cells, window, places, transitions, film.shape[:3]).painted,
+        shape,
+        replace(context, progress=context.between(0.86, 0.9)),
+    )
+    yield average_picture(average, context)
+    yield compared_pattern(wanted, params.rescale, PEAK, context)
+    yield from crop_film(clip, replace(context, progress=context.between(0.9, 1)))
+    yield encode("crop-2", "Pattern", pattern.pixels, pattern.peak, context)
+    context.progress("crop", 1)
+
+
+def _matched(
+    average: Real, wanted: Real, cells: Cells, params: VideoTransferParams, context: Context
+) -> NDArray[np.int64]:
+    """The place of the clip for every cell, found in the average image."""
+    with Team(context.threads) as team:
+        matches = match_cells(
+            average,
+            wanted,
+            cells,
+            peak=PEAK,
+            candidates=params.candidates,
+            seed=params.seed,
+            work=Work(team, context.progress),
+        )
+    return matches.places
+
+
+def _with_channels(pixels: Real, channels: int) -> Real:
+    """A pattern in grey for a clip in grey, and with equal channels for one in colour."""
+    if pixels.shape[2] == channels:
+        return pixels
+    return luminance(pixels)[:, :, None] if channels == 1 else np.repeat(pixels, channels, axis=2)
+
+
+def _shape(sizes: Sequence[Size], params: VideoTransferParams) -> tuple[int, int, int]:
+    return params.frames or sizes[0].frames, sizes[1].height, sizes[1].width
+
+
+VIDEO_TRANSFER = Method(
+    name="video-transfer",
+    title="Video transfer",
+    summary="Renders a picture in the patches of a clip whose average is most like it, moving as the clip does.",
+    inputs=(
+        Slot("clip", "Clip", "The video whose texture is used.", moving=True),
+        Slot("pattern", "Pattern", "The picture that is rendered."),
+    ),
+    params=VideoTransferParams,
+    references=(PATCHWORK,),
+    explanation=EXPLANATION,
+    check=check,
+    idle=idle_reach,
+    run=run,
+    outputs=(
+        *FILMS,
+        *views("cells", deep=False),
+        *views("average", of=()),
+        *views("pattern", of=("rescale",)),
+        *SHOWN_CLIP,
+        *views("crop-2", of=()),
+    ),
+    size=pattern_size,
+    toroidal=lambda params: False,
+    memory=memory,
+)

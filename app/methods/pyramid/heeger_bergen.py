@@ -1,0 +1,197 @@
+"""`heeger-bergen`: pyramid-based texture synthesis."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from app.errors import InvalidInputError
+from app.methods.announced import Announced, shown_inputs, texture, views
+from app.methods.explanations.heeger_bergen import EXPLANATION
+from app.methods.explanations.references import HEEGER_BERGEN as ARTICLE
+from app.methods.explanations.references import IPOL_HEEGER_BERGEN, PERIODIC_PLUS_SMOOTH, STEERABLE_PYRAMID
+from app.methods.inputs import INPUTS, refuse_infinite, refuse_other_size
+from app.methods.model import Context, Fact, Method, Picture, Size, Source
+from app.methods.output.pictures import crops, encode
+from app.methods.params import ADD_SMOOTH, ADVANCED, StillParams
+from app.methods.pyramid.sub_bands import mosaic
+from app.synthesis.heeger_bergen import Decomposition, Sample, Synthesis
+from app.synthesis.periodic import smooth_planes
+from app.synthesis.pyramid import SteerablePyramid
+from app.synthesis.team import Team
+from app.synthesis.work import Work
+
+VIEW = 512  # pixels of a side of the views of iterations, at most
+MEMORY = 1_600_000_000  # bytes, so that the process stays within a worker's default of 2 GiB
+TEXTURE_BYTES, CROP_BYTES, MIRROR_BYTES = 37, 27, 77  # for each value, measured at 4096² in colour
+
+Real = NDArray[np.float32]
+
+
+class HeegerBergenParams(StillParams):
+    """Parameters of Heeger and Bergen's method."""
+
+    scales: int = Field(
+        4,
+        ge=1,
+        le=8,
+        title="Scales",
+        description="How many sizes of detail are told apart, each twice as coarse as the one before. More keep "
+        "larger features; S scales need a crop and a texture of at least 2^S pixels a side.",
+    )
+    orientations: int = Field(
+        4,
+        ge=1,
+        le=8,
+        title="Orientations",
+        description="How many directions are told apart at each scale. More make the texture follow the sample's "
+        "directions more closely; 1 makes it forget them.",
+    )
+    iterations: int = Field(
+        5,
+        ge=1,
+        le=20,
+        title="Iterations",
+        description="How often the histograms of the sub-bands and of the pixels are matched in turn. Little changes "
+        "after 5.",
+    )
+    edges: Literal["periodic", "mirror"] = Field(
+        "periodic",
+        title="Edges",
+        description="What becomes of the crop's borders, which do not match: 'periodic' takes the crop's periodic "
+        "component; 'mirror' surrounds the crop by its mirror images, and keeps slow changes of light and colour.",
+        json_schema_extra=ADVANCED,
+    )
+    add_smooth: bool = ADD_SMOOTH
+
+
+def check(sizes: Sequence[Size], params: HeegerBergenParams) -> None:
+    """Refuse more scales than fit, and a smooth component that there is none of or that does not fit."""
+    size = sizes[0]
+    width, height = params.width or size.width, params.height or size.height
+    for what, sides in (("crop", (size.width, size.height)), ("texture", (width, height))):
+        if min(sides) < 2**params.scales:
+            fitting = min(sides).bit_length() - 1
+            raise InvalidInputError(
+                f"{params.scales} scales need at least {2**params.scales} pixels a side, and the {what} has "
+                f"{sides[0]} × {sides[1]}: "
+                + (f"take at most {fitting} scales, or a larger {what}." if fitting else f"take a larger {what}."),
+                "parameters.scales",
+            )
+    _refuse_too_large(size, width * height, params)
+    if params.add_smooth and params.edges != "periodic":
+        raise InvalidInputError(
+            "Only periodic edges take the smooth component out of the crop: take those, or do not add it.",
+            "parameters.add_smooth",
+        )
+    if params.add_smooth:
+        refuse_other_size(size, width, height)
+
+
+def _refuse_too_large(size: Size, pixels: int, params: HeegerBergenParams) -> None:
+    of_crop = MIRROR_BYTES if params.edges == "mirror" else CROP_BYTES
+    needed = size.channels * (of_crop * size.width * size.height + TEXTURE_BYTES * pixels)
+    if needed > MEMORY:
+        raise InvalidInputError(
+            f"The sub-bands of crop and texture are held in memory, and these would take {needed / 1e9:.1f} of the "
+            f"{MEMORY / 1e9:.1f} GB there are: take a smaller crop, or a smaller width and height.",
+            "parameters.width",
+        )
+
+
+def run(sources: Sequence[Source], params: HeegerBergenParams, context: Context) -> Iterator[Picture]:
+    """The texture, how it came about, and the sub-bands of sample and texture."""
+    source = sources[0]
+    height, width, _ = source.pixels.shape
+    check([source.size], params)
+    refuse_infinite(sources)
+    height, width = params.height or height, params.width or width
+    context.progress("sample", 0.0)
+    decomposition = Decomposition(params.scales, params.orientations, params.edges)
+    pyramid = SteerablePyramid(height, width, params.scales, params.orientations)
+    ends = {"sample": 0.1, "noise": 0.14}
+    ends |= {_stage(number): 0.14 + 0.66 * number / params.iterations for number in range(1, params.iterations + 1)}
+    begins = dict(zip(ends, (0.0, *ends.values()), strict=False))
+    begins["sub-bands"], ends["sub-bands"] = 0.96, 1.0
+    views = {}
+    with Team(context.threads) as team:
+        work = Work(team, lambda stage, part: context.between(begins[stage], ends[stage])(stage, part))
+        sample = Sample(source.pixels, decomposition, pyramid, work)
+        synthesis = Synthesis(sample, pyramid, params.seed, work)
+        views["noise", "Noise with the crop's histogram"] = synthesis.planes(VIEW)
+        for number in range(1, params.iterations + 1):
+            synthesis.iterate(_stage(number))
+            if number < params.iterations and number.bit_count() == 1:
+                views[f"iteration-{number}", f"After iteration {number}"] = synthesis.planes(VIEW)
+        texture = synthesis.planes()
+        if params.add_smooth:
+            texture += smooth_planes(source.pixels, context.threads)
+        context.progress("texture", 0.8)
+        yield encode("texture", "Texture", _pixels(texture), source.peak, context, kind="texture")
+        del texture
+        context.progress("crop", 0.84)
+        yield from crops(sources, context)
+        context.progress("iterations", 0.86)
+        for (name, title), planes in views.items():
+            yield encode(name, title, _pixels(planes), source.peak, context)
+        picture = mosaic(sample.channels[0], decomposition, context.between(0.88, 0.92))
+        title = "Sub-bands of the crop's first principal component"
+        yield encode("crop-bands", title, picture, 1, context, facts=_shares(sample))
+        picture = mosaic(synthesis.channel(0), replace(decomposition, edges="periodic"), context.between(0.92, 0.96))
+        title = "Sub-bands of the texture's first principal component"
+        distances = synthesis.distances("sub-bands")
+        distance = 100 * sum(distances.values()) / len(distances)
+        fact = Fact("distance", "Distance of the sub-bands' histograms, on average", distance, "% of their deviation")
+        yield encode("texture-bands", title, picture, 1, context, facts=(fact,))
+
+
+def _stage(iteration: int) -> str:
+    return f"iteration {iteration}"
+
+
+def _pixels(planes: Real) -> Real:
+    return planes.transpose(1, 2, 0)
+
+
+def _shares(sample: Sample) -> tuple[Fact, ...]:
+    """How the variance is shared out over the principal components."""
+    variances = sample.space.variances
+    shares = 100 * variances / (variances.sum() or 1)
+    return tuple(
+        Fact(f"component-{number}", f"Variance along principal component {number}", float(share), "%")
+        for number, share in enumerate(shares, 1)
+    )
+
+
+_MATCHED = "scales", "orientations", "edges"
+_HISTORY = "iterations", *_MATCHED
+
+
+def _iteration(number: int) -> Announced:
+    name, words = f"iteration-{number}", f"“Iterations” is more than {number}"
+    return Announced(name, of=_HISTORY, given=lambda params, inputs: params.iterations > number, condition=words)
+
+
+HEEGER_BERGEN = Method(
+    name="heeger-bergen",
+    title="Heeger–Bergen (pyramid histograms)",
+    summary="Matches the histograms of noise, and of its sub-bands by scale and orientation, to those of the crop.",
+    inputs=INPUTS,
+    params=HeegerBergenParams,
+    references=(ARTICLE, IPOL_HEEGER_BERGEN, STEERABLE_PYRAMID, PERIODIC_PLUS_SMOOTH),
+    explanation=EXPLANATION,
+    check=check,
+    run=run,
+    outputs=(
+        texture(),
+        *shown_inputs(),
+        *views("noise", of=("edges",)),
+        *map(_iteration, (1, 2, 4, 8, 16)),
+        *views("crop-bands", of=_MATCHED),
+        *views("texture-bands", of=_HISTORY),
+    ),
+    toroidal=lambda params: not params.add_smooth,
+)
