@@ -11,8 +11,8 @@ from imagecodecs import imread
 from numpy.typing import NDArray
 
 from app.settings import ROOT
+from app.synthesis.fourier.periodic import periodic_component
 from app.synthesis.luminance import WEIGHTS
-from app.synthesis.periodic import periodic_component
 
 Complex = NDArray[np.complex128]
 Real = NDArray[np.float64]
@@ -92,7 +92,7 @@ def covariance(spectrum: Complex) -> Real:
 
 
 def set_right(kernel: Real, wanted: Real) -> Real:
-    """R t, see app.synthesis.cut_texton."""
+    """R t, see app.synthesis.gaussian.cut_texton."""
     values, axes = np.linalg.eigh(covariance(without_mean(kernel))[0, 0])
     half, back = (axes * np.sqrt(values)) @ axes.T, (axes / np.sqrt(values)) @ axes.T
     values, axes = np.linalg.eigh(half @ wanted @ half)

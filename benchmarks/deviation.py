@@ -12,14 +12,13 @@ from numpy.typing import NDArray
 
 from app.images.decode import Limits, decode
 from app.settings import ROOT
-from app.synthesis.cells import Cells, jittered_cells
-from app.synthesis.patchwork import Patchwork
-from app.synthesis.team import Team
-from app.synthesis.transfer import rescaled, transfer
-from app.synthesis.transitions import Transitions
-from app.synthesis.unbounded_cells import Reach, joined_cells
-from app.synthesis.video_patchwork import Clip, VideoPatchwork
-from app.synthesis.work import Work
+from app.synthesis.parallel import Team, Work
+from app.synthesis.patchwork.cells import Cells, jittered_cells
+from app.synthesis.patchwork.patchwork import Patchwork
+from app.synthesis.patchwork.transfer import rescaled, transfer
+from app.synthesis.patchwork.transitions import Transitions
+from app.synthesis.patchwork.unbounded_cells import Reach, joined_cells
+from app.synthesis.patchwork.video_patchwork import Clip, VideoPatchwork
 from benchmarks.kernel import THREADS
 from tests.synthesis.full_sums import patchwork_sum, transfer_sum
 

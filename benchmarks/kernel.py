@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 from app.images.png import PngWriter
 from app.methods.model import Context, Source
 from app.methods.registry import method
-from app.synthesis.field import Field, Noise
-from app.synthesis.levels import Levels
-from app.synthesis.periodic import periodic_component, periodic_spectrum
-from app.synthesis.team import Team
+from app.synthesis.fourier.field import Field, Noise
+from app.synthesis.fourier.periodic import periodic_component, periodic_spectrum
+from app.synthesis.parallel import Team
+from app.synthesis.sinks import Levels
 from benchmarks.timing import Ratio, alternate
 
 THREADS = 2

@@ -16,9 +16,9 @@ from PIL import Image
 
 from app.samples import bundled
 from app.settings import ROOT
+from app.synthesis.fourier.periodic import periodic_component
+from app.synthesis.gaussian.rpn import rpn
 from app.synthesis.luminance import luminance
-from app.synthesis.periodic import periodic_component
-from app.synthesis.rpn import rpn
 from app.synthesis.structure import structure_index
 
 Real = NDArray[np.float32]

@@ -24,7 +24,7 @@ from app.methods.model import Context, Film, Picture, Source
 from app.methods.output.films import texture_film
 from app.methods.registry import method
 from app.settings import ROOT
-from app.synthesis.patchwork import patchwork
+from app.synthesis.patchwork.patchwork import patchwork
 from benchmarks.kernel import MEGABYTE, THREADS, above_idle, sample
 from benchmarks.timing import Ratio, alternate
 

@@ -10,7 +10,8 @@ from app.experiments.ports import BlobStore
 from app.images.crop import Rectangle
 from app.images.read import read_crop
 from app.images.strip import place
-from app.synthesis.luminance import Real, luminance
+from app.synthesis.arrays import Real
+from app.synthesis.luminance import luminance
 from app.synthesis.structure import CENTRE, LEAST, Structure, structure_index, too_small
 
 Verdict = Literal["micro-texture", "borderline", "structured", "unknown"]

@@ -3,12 +3,10 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from app.errors import InvalidInputError
 from app.methods.model import Size, Slot, Source
-
-Real = NDArray[np.float32]
+from app.synthesis.arrays import Real
 
 
 def alike(sources: Sequence[Source]) -> list[Real]:

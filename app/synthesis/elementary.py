@@ -15,9 +15,9 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Complex = NDArray[np.complex64]
+from app.synthesis.arrays import Complex, Real
+
 Double = NDArray[np.float64]
-Real = NDArray[np.float32]
 
 
 def exp(x: ArrayLike) -> Double:

@@ -1,9 +1,9 @@
 """One grey picture of a colour one."""
 
 import numpy as np
-from numpy.typing import NDArray
 
-Real = NDArray[np.float32]
+from app.synthesis.arrays import Real
+
 WEIGHTS = (0.2126, 0.7152, 0.0722)  # of red, green and blue in sRGB (ITU-R BT.709)
 
 

@@ -24,14 +24,11 @@ from math import pi, sqrt
 
 import numpy as np
 import scipy.fft
-from numpy.typing import NDArray
 
+from app.synthesis.arrays import Complex, Real
+from app.synthesis.fourier.periodic import periodic_spectrum
+from app.synthesis.fourier.spot import centre
 from app.synthesis.luminance import luminance
-from app.synthesis.periodic import periodic_spectrum
-from app.synthesis.spot import centre
-
-Complex = NDArray[np.complex64]
-Real = NDArray[np.float32]
 
 SIGMA = 2.0  # pixels; the scale at which δ tells best, see benchmarks/README.md
 LEAST = 32  # pixels of a side; at 32 δ tells three times out of four, see benchmarks/README.md, and below of nothing

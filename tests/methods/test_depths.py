@@ -14,7 +14,7 @@ from app.images.convert import convert, depth_of
 from app.images.png import encode_png
 from app.methods.model import Source
 from app.methods.registry import METHODS
-from app.synthesis.levels import Levels
+from app.synthesis.sinks import Levels
 from tests.methods.runs import run, sources_for
 
 STILL = {name: method for name, method in METHODS.items() if not method.moving}

@@ -9,7 +9,7 @@ import pytest
 
 from app.settings import ROOT
 from app.synthesis import elementary
-from app.synthesis.spectral import STATES, _rayleigh_table, phase_table
+from app.synthesis.fourier.spectral import STATES, _rayleigh_table, phase_table
 
 # In single precision these have other bits with AVX-512 than without; BLAS has others for each of its kernels.
 VARYING = {

@@ -7,10 +7,10 @@ from PIL import Image
 
 from app.samples import bundled
 from app.settings import ROOT
-from app.synthesis.adsn import adsn
+from app.synthesis.fourier.periodic import periodic_component
+from app.synthesis.gaussian.adsn import adsn
+from app.synthesis.gaussian.rpn import rpn
 from app.synthesis.luminance import luminance
-from app.synthesis.periodic import periodic_component
-from app.synthesis.rpn import rpn
 from app.synthesis.structure import CENTRE, Structure, delta_of, structure_index, too_small
 
 NOTHING = Structure(0, 0, 0, 0, 0)

@@ -5,7 +5,6 @@ from math import ceil
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 
 from app.errors import InvalidInputError
@@ -17,11 +16,10 @@ from app.methods.inputs import INPUTS, refuse_infinite
 from app.methods.model import Context, Fact, Method, Picture, Progress, Size, Source
 from app.methods.output.pictures import crops, encode
 from app.methods.params import WHOLE_IN_MEMORY
-from app.synthesis.dsn import Counts, counts, dsn, excess_kurtosis, shape, standard_spot
-from app.synthesis.spot import Spot
-from app.synthesis.spot_noise import asymptotic, sample_spot
-
-Real = NDArray[np.float32]
+from app.synthesis.arrays import Real
+from app.synthesis.fourier.spot import Spot
+from app.synthesis.fourier.spot_noise import asymptotic, sample_spot
+from app.synthesis.gaussian.dsn import Counts, counts, dsn, excess_kurtosis, shape, standard_spot
 
 ORDERS = (10, 100, 1000, 10_000, 100_000)
 DEVIATIONS = 3  # of a standard spot's noise, from mid-grey to black and to white

@@ -17,10 +17,10 @@ from app.methods.inputs import alike, refuse_infinite
 from app.methods.model import Context, Method, Picture, Size, Slot, Source
 from app.methods.output.pictures import crops
 from app.methods.params import WHOLE_IN_MEMORY
-from app.synthesis.field import Noise
-from app.synthesis.levels import Levels
-from app.synthesis.mixing import Mixture
-from app.synthesis.team import Team
+from app.synthesis.fourier.field import Noise
+from app.synthesis.gaussian.mixing import Mixture
+from app.synthesis.parallel import Team
+from app.synthesis.sinks import Levels
 
 MOST_STEPS, FURTHER = 16, 2  # of the path; samples beside the first two
 PANEL = 512  # pixels of each side that a step of the path shows in the strip

@@ -14,8 +14,8 @@ from app.methods.model import Context, Method, Picture, Size, Slot, Source
 from app.methods.output.pictures import crops, encode, log_modulus
 from app.methods.params import MAX_SEED, WHOLE_IN_MEMORY, StillParams
 from app.numbers import FAR
-from app.synthesis.modulus_phase import centred_phase, power, swap
-from app.synthesis.spot import centre
+from app.synthesis.fourier.spot import centre
+from app.synthesis.gaussian.modulus_phase import centred_phase, power, swap
 
 
 class ModulusPhaseParams(StillParams):

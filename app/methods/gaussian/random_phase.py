@@ -15,12 +15,12 @@ from app.methods.inputs import refuse_infinite, refuse_other_size
 from app.methods.model import Context, Picture, Size, Source
 from app.methods.output.pictures import log_modulus
 from app.methods.params import ADD_SMOOTH, ADVANCED
-from app.synthesis.field import Field, Noise, row_blocks
-from app.synthesis.levels import Extent, Levels
-from app.synthesis.modulus_phase import power
-from app.synthesis.periodic import smooth_planes
-from app.synthesis.spot import centre, make_spot
-from app.synthesis.team import Team
+from app.synthesis.fourier.field import Field, Noise
+from app.synthesis.fourier.periodic import smooth_planes
+from app.synthesis.fourier.spot import centre, make_spot
+from app.synthesis.gaussian.modulus_phase import power
+from app.synthesis.parallel import Team, row_blocks
+from app.synthesis.sinks import Extent, Levels
 
 
 class RandomPhaseParams(SpotParams):

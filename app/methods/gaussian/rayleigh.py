@@ -10,13 +10,14 @@ from app.methods.explanations.rayleigh import EXPLANATION
 from app.methods.explanations.references import PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
 from app.methods.inputs import INPUTS, refuse_infinite
 from app.methods.model import Context, Fact, Method, Picture, Progress, Size, Source
-from app.methods.output.pictures import Real, crops, encode, log_modulus
+from app.methods.output.pictures import crops, encode, log_modulus
 from app.methods.params import WHOLE_IN_MEMORY, StillParams
-from app.synthesis.field import Noise, synthesize
-from app.synthesis.modulus_phase import power
-from app.synthesis.periodic import periodic_component
-from app.synthesis.rayleigh import rayleigh
-from app.synthesis.spot import centre
+from app.synthesis.arrays import Real
+from app.synthesis.fourier.field import Noise, synthesize
+from app.synthesis.fourier.periodic import periodic_component
+from app.synthesis.fourier.spot import centre
+from app.synthesis.gaussian.modulus_phase import power
+from app.synthesis.gaussian.rayleigh import rayleigh
 
 
 def check(sizes: Sequence[Size], params: StillParams) -> None:

@@ -4,7 +4,6 @@ from collections.abc import Iterator, Sequence
 from math import sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 
 from app.methods.announced import Announced, shown_inputs, texture, views
@@ -16,12 +15,11 @@ from app.methods.model import Context, Fact, Method, Picture, Size, Source
 from app.methods.output.pictures import crops, encode
 from app.methods.params import WHOLE_IN_MEMORY, StillParams
 from app.numbers import FAR
-from app.synthesis.cut_texton import cut_texton, lag_error
+from app.synthesis.arrays import Real
 from app.synthesis.elementary import log10
-from app.synthesis.spot import Spot, centre
-from app.synthesis.texton import extend_texton, radii, texton, texton_noise
-
-Real = NDArray[np.float32]
+from app.synthesis.fourier.spot import Spot, centre
+from app.synthesis.gaussian.cut_texton import cut_texton, lag_error
+from app.synthesis.gaussian.texton import extend_texton, radii, texton, texton_noise
 
 PERCENT = (50, 90, 99)
 CUT_OFF = 0.001  # part of a texton's values that its linear picture shows as black or white

@@ -12,10 +12,11 @@ from app.methods.explanations.video_rpn import EXPLANATION
 from app.methods.gaussian.params import SpotParams, not_extended
 from app.methods.model import Context, Fact, Method, Picture, Progress, Size, Slot, Source
 from app.methods.output.films import crop_film, film_memory, texture_film
-from app.methods.output.pictures import Real, encode, log_modulus
+from app.methods.output.pictures import encode, log_modulus
 from app.methods.params import MovingParams
-from app.synthesis.team import Team
-from app.synthesis.video_rpn import MovingField
+from app.synthesis.arrays import Real
+from app.synthesis.gaussian.video_rpn import MovingField
+from app.synthesis.parallel import Team
 
 CUBES = ("crop-cube", "cube")
 FRAMES, ROWS = 16, 24  # of floats: averages, powers and the like; rows of all frames, which the threads have in hand

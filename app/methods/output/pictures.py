@@ -4,16 +4,13 @@ from collections.abc import Iterator, Sequence
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from app.images.png import PngWriter
 from app.methods.model import Context, Fact, Picture, Source
-from app.synthesis.field import row_blocks
-from app.synthesis.levels import Levels
-from app.synthesis.spectral import LogModulus
-from app.synthesis.team import Team
-
-Real = NDArray[np.float32]
+from app.synthesis.arrays import Real
+from app.synthesis.fourier.spectral import LogModulus
+from app.synthesis.parallel import Team, row_blocks
+from app.synthesis.sinks import Levels
 
 
 def encode(

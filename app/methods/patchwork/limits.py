@@ -4,19 +4,15 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 
 from app.errors import InvalidInputError
 from app.methods.model import Size
 from app.methods.params import ADVANCED, StillParams
-from app.synthesis.cell_match import HALF
-from app.synthesis.cell_shapes import reach as near_reach
-from app.synthesis.cells import LEFT_OUT, SLACK
-from app.synthesis.unbounded_cells import ENDS, Reach, span, table_bytes, terms
-
-Real = NDArray[np.float32]
+from app.synthesis.patchwork.cell_match import HALF
+from app.synthesis.patchwork.cell_shapes import reach as near_reach
+from app.synthesis.patchwork.cells import LEFT_OUT, SLACK
+from app.synthesis.patchwork.unbounded_cells import ENDS, Reach, span, table_bytes, terms
 
 LEAST_GRID = 4
 BYTES_OF_CELL = 1000  # while cells are laid out

@@ -26,18 +26,16 @@ from app.methods.patchwork.limits import (
     summed,
 )
 from app.methods.patchwork.pictures import cell_colours
-from app.synthesis.cells import Cells, jittered_cells, least_sample
-from app.synthesis.field import row_blocks
-from app.synthesis.levels import Levels
-from app.synthesis.patchwork import BAND, TILE, Patchwork, band, painted
-from app.synthesis.team import Team
-from app.synthesis.unbounded_cells import Reach, joined_cells
-from app.synthesis.work import Work
+from app.synthesis.arrays import Real
+from app.synthesis.parallel import Team, Work, row_blocks
+from app.synthesis.patchwork.cells import Cells, jittered_cells, least_sample
+from app.synthesis.patchwork.patchwork import BAND, TILE, Patchwork, band, painted
+from app.synthesis.patchwork.unbounded_cells import Reach, joined_cells
+from app.synthesis.sinks import Levels
 
 BANDS = 4  # that are in work at once
 DIMMED = np.float32(0.25)
 
-Real = NDArray[np.float32]
 Rows = Callable[[int, int, Callable[[], None]], Real]
 
 

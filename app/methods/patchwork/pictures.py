@@ -16,11 +16,11 @@ from app.methods.output.films import film_memory, texture_film
 from app.methods.output.pictures import encode
 from app.methods.params import ADVANCED
 from app.methods.patchwork.limits import Reached
-from app.synthesis.cells import Cells, Window
-from app.synthesis.patch_match import Matches
-from app.synthesis.video_patchwork import in_order
+from app.synthesis.arrays import Real
+from app.synthesis.patchwork.best_places import Matches
+from app.synthesis.patchwork.cells import Cells, Window
+from app.synthesis.patchwork.video_patchwork import in_order
 
-Real = NDArray[np.float32]
 Painter = Callable[[Window], Callable[[int], Real]]  # of a window, then of a frame
 
 IN_TIME = 3  # stream of random numbers; those before lay out the cells and draw or match their sources

@@ -27,13 +27,11 @@ from app.methods.patchwork.limits import (
     search_bytes,
 )
 from app.methods.patchwork.pictures import cell_colours, compared_pattern, match_facts
-from app.synthesis.cells import jittered_cells, least_sample
-from app.synthesis.field import row_blocks
-from app.synthesis.patchwork import painted
-from app.synthesis.team import Team
-from app.synthesis.transfer import rescaled, transfer
-from app.synthesis.unbounded_cells import Reach, joined_cells
-from app.synthesis.work import Work
+from app.synthesis.parallel import Team, Work, row_blocks
+from app.synthesis.patchwork.cells import jittered_cells, least_sample
+from app.synthesis.patchwork.patchwork import painted
+from app.synthesis.patchwork.transfer import rescaled, transfer
+from app.synthesis.patchwork.unbounded_cells import Reach, joined_cells
 
 BYTES_OF_PATTERN = 8  # for each value, beside the search
 STAGES = {"matching": (0.05, 0.7), "averages": (0.7, 0.78), "texture": (0.78, 0.88)}

@@ -27,7 +27,6 @@ from app.methods.patchwork.pictures import (
     IN_TIME,
     INTERVAL,
     Painter,
-    Real,
     average_picture,
     cells_cube,
     film_bytes,
@@ -37,12 +36,13 @@ from app.methods.patchwork.pictures import (
     sharpness,
     textured,
 )
-from app.synthesis.cells import jittered_cells, least_sample, random
-from app.synthesis.transitions import Transitions, longest_interval
-from app.synthesis.unbounded_cells import Reach, joined_cells, terms
-from app.synthesis.video_cells import FixedCells, source_colours
-from app.synthesis.video_mosaic import Mosaic, held_bytes, needed, products
-from app.synthesis.video_patchwork import Clip, VideoPatchwork
+from app.synthesis.arrays import Real
+from app.synthesis.patchwork.cells import jittered_cells, least_sample, random
+from app.synthesis.patchwork.transitions import Transitions, longest_interval
+from app.synthesis.patchwork.unbounded_cells import Reach, joined_cells, terms
+from app.synthesis.patchwork.video_cells import FixedCells, source_colours
+from app.synthesis.patchwork.video_mosaic import Mosaic, held_bytes, needed, products
+from app.synthesis.patchwork.video_patchwork import Clip, VideoPatchwork
 
 
 class VideoPatchworkParams(SeamlessParams):

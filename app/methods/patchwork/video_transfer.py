@@ -32,7 +32,6 @@ from app.methods.patchwork.limits import (
 from app.methods.patchwork.pictures import (
     IN_TIME,
     INTERVAL,
-    Real,
     average_picture,
     cells_cube,
     compared_pattern,
@@ -41,16 +40,16 @@ from app.methods.patchwork.pictures import (
     sharpness,
     textured,
 )
-from app.synthesis.cell_match import match_cells
-from app.synthesis.cells import Cells, jittered_cells, least_sample, random
+from app.synthesis.arrays import Real
 from app.synthesis.luminance import luminance
-from app.synthesis.team import Team
-from app.synthesis.transfer import rescaled
-from app.synthesis.transitions import Transitions, longest_interval
-from app.synthesis.unbounded_cells import Reach, joined_cells, terms
-from app.synthesis.video_cells import FixedCells
-from app.synthesis.video_patchwork import Clip, VideoPatchwork
-from app.synthesis.work import Work
+from app.synthesis.parallel import Team, Work
+from app.synthesis.patchwork.cell_match import match_cells
+from app.synthesis.patchwork.cells import Cells, jittered_cells, least_sample, random
+from app.synthesis.patchwork.transfer import rescaled
+from app.synthesis.patchwork.transitions import Transitions, longest_interval
+from app.synthesis.patchwork.unbounded_cells import Reach, joined_cells, terms
+from app.synthesis.patchwork.video_cells import FixedCells
+from app.synthesis.patchwork.video_patchwork import Clip, VideoPatchwork
 
 PEAK = 255  # of a clip's values
 

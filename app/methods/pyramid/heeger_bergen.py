@@ -4,8 +4,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Literal
 
-import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 
 from app.errors import InvalidInputError
@@ -18,17 +16,15 @@ from app.methods.model import Context, Fact, Method, Picture, Size, Source
 from app.methods.output.pictures import crops, encode
 from app.methods.params import ADD_SMOOTH, ADVANCED, StillParams
 from app.methods.pyramid.sub_bands import mosaic
-from app.synthesis.heeger_bergen import Decomposition, Sample, Synthesis
-from app.synthesis.periodic import smooth_planes
-from app.synthesis.pyramid import SteerablePyramid
-from app.synthesis.team import Team
-from app.synthesis.work import Work
+from app.synthesis.arrays import Real
+from app.synthesis.fourier.periodic import smooth_planes
+from app.synthesis.parallel import Team, Work
+from app.synthesis.pyramid.heeger_bergen import Decomposition, Sample, Synthesis
+from app.synthesis.pyramid.pyramid import SteerablePyramid
 
 VIEW = 512  # pixels of a side of the views of iterations, at most
 MEMORY = 1_600_000_000  # bytes, so that the process stays within a worker's default of 2 GiB
 TEXTURE_BYTES, CROP_BYTES, MIRROR_BYTES = 37, 27, 77  # for each value, measured at 4096² in colour
-
-Real = NDArray[np.float32]
 
 
 class HeegerBergenParams(StillParams):

@@ -1,16 +1,14 @@
 """The sub-bands of a steerable pyramid as one picture."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from app.methods.model import Progress
-from app.synthesis.heeger_bergen import Channel, Decomposition
-from app.synthesis.pyramid import Band
+from app.synthesis.arrays import Real
+from app.synthesis.pyramid.heeger_bergen import Channel, Decomposition
+from app.synthesis.pyramid.pyramid import Band
 
 CELL = 256  # pixels of a side of what is shown of a sub-band, at most
 GAP = 4  # between the sub-bands
-
-Real = NDArray[np.float32]
 
 
 def mosaic(plane: Real, decomposition: Decomposition, progress: Progress) -> Real:

@@ -15,7 +15,7 @@ from app.methods.inputs import INPUTS, refuse_infinite
 from app.methods.model import Context, Fact, Method, Picture, Progress, Size, Source
 from app.methods.output.pictures import coordinate_colours, crops, encode
 from app.methods.params import StillParams
-from app.synthesis.efros_leung import border_share, efros_leung, verbatim_share
+from app.synthesis.sampling.efros_leung import border_share, efros_leung, verbatim_share
 
 HALF_PATCH = 4
 MOST_WORK = 10**12  # products: a minute or two on two processors

@@ -9,7 +9,7 @@ from app.errors import InvalidInputError
 from app.methods.gaussian.mix import MIX, MixParams
 from app.methods.model import Context, Size, Source
 from app.methods.registry import METHODS
-from app.synthesis.mixing import mix
+from app.synthesis.gaussian.mixing import mix
 
 
 def crop(height=40, width=50, channels=3, peak=255, seed=0):

@@ -7,7 +7,7 @@ from imagecodecs import png_decode
 from app.errors import InvalidInputError
 from app.methods.gaussian.modulus_phase import MODULUS_PHASE
 from app.methods.model import Context, Size, Source
-from app.synthesis.modulus_phase import swap
+from app.synthesis.gaussian.modulus_phase import swap
 
 
 def crop(height=40, width=50, channels=3, peak=255, seed=0):

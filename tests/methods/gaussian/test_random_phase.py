@@ -13,7 +13,7 @@ from app.methods.gaussian.random_phase import RandomPhaseParams
 from app.methods.model import Context, Size, Source
 from app.methods.params import MAX_SEED
 from app.methods.registry import METHODS, method
-from app.synthesis.rpn import rpn
+from app.synthesis.gaussian.rpn import rpn
 
 NAMES = ["texture", "crop", "periodic", "smooth", "spot", "input-spectrum", "output-spectrum"]
 BOTH = pytest.mark.parametrize("name", ["rpn", "adsn"])

@@ -8,8 +8,8 @@ from pydantic import ValidationError
 from app.methods.gaussian.texton import TEXTON
 from app.methods.model import Context, Source
 from app.methods.registry import METHODS
-from app.synthesis.cut_texton import cut_texton, lag_error
-from app.synthesis.texton import extend_texton, texton
+from app.synthesis.gaussian.cut_texton import cut_texton, lag_error
+from app.synthesis.gaussian.texton import extend_texton, texton
 
 RNG = np.random.default_rng(0)
 PIXELS = (RNG.integers(0, 80, (60, 70, 1)) + RNG.integers(40, 120, (60, 70, 3))).astype(np.float32)

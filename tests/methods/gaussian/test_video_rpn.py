@@ -10,8 +10,8 @@ from app.images.video.reader import read_film
 from app.methods.gaussian.video_rpn import VIDEO_RPN
 from app.methods.model import Context, Film, Size, Source
 from app.methods.output.films import film_memory
-from app.synthesis.team import Team
-from app.synthesis.video_rpn import MovingField, video_rpn
+from app.synthesis.gaussian.video_rpn import MovingField, video_rpn
+from app.synthesis.parallel import Team
 
 
 def clip(frames=6, height=40, width=48, channels=3, still=False):

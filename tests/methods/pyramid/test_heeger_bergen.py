@@ -8,7 +8,7 @@ from pydantic import ValidationError
 from app.errors import InvalidInputError
 from app.methods.model import Context, Size, Source
 from app.methods.pyramid.heeger_bergen import HEEGER_BERGEN, HeegerBergenParams
-from app.synthesis.heeger_bergen import Decomposition, heeger_bergen
+from app.synthesis.pyramid.heeger_bergen import Decomposition, heeger_bergen
 
 
 def crop(height=40, width=50, channels=3, seed=0):

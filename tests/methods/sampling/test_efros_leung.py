@@ -10,7 +10,7 @@ from pydantic import ValidationError
 from app.errors import InvalidInputError
 from app.methods.model import Context, Size, Source
 from app.methods.sampling.efros_leung import EFROS_LEUNG, EfrosLeungParams
-from app.synthesis.efros_leung import border_share, efros_leung, verbatim_share
+from app.synthesis.sampling.efros_leung import border_share, efros_leung, verbatim_share
 
 
 def crop(height=24, width=30, channels=3, peak=255):

@@ -1,0 +1,233 @@
+"""The engine of RPN and ADSN: from a sample to rows of a texture, by blocks that stay in the processor's cache.
+
+Three passes over blocks, each shared out over the threads of a `Team`:
+
+1. rows of the spot → real transforms along x (rows outside the spot are zero and are never transformed);
+2. columns → transform along y, minus the smooth component (same size), times the random spectrum, back along y;
+3. rows → inverse real transform along x, plus the mean, handed to a sink.
+
+Every block of columns has its own stream of random numbers, so the result does not depend on the number of threads.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import scipy.fft
+
+from app.synthesis.arrays import Complex, Progress, Real
+from app.synthesis.fourier.periodic import SmoothSpectrum, periodic_planes
+from app.synthesis.fourier.spectral import column_blocks, random_block
+from app.synthesis.fourier.spot import Profile, centre, make_spot
+from app.synthesis.parallel import Team, row_blocks
+from app.synthesis.sinks import Sink, into
+
+
+@dataclass(frozen=True)
+class Noise:
+    """What to make of a sample.
+
+    Parameters
+    ----------
+    height, width : int
+        Size of the texture in pixels.
+    seed : int
+        Not negative.
+    rayleigh : bool
+        ADSN if true, RPN if false.
+    phase : {"add", "replace"}
+        Add the random phase to every channel's own, or replace them all by it (the article's "wrong RPN").
+    alpha : float
+        Width of the spot's transition, 0–0.5 of the sample.
+    window : {"bump", "gaussian"}
+        Its profile.
+    periodic : bool
+        Take the sample's periodic component; without, the sample itself, whose jumps between opposite borders become
+        streaks.
+    add_smooth : bool
+        Add the smooth component to the texture; same size and with ``periodic`` only.
+    """
+
+    height: int
+    width: int
+    seed: int = 0
+    rayleigh: bool = False
+    phase: Literal["add", "replace"] = "add"
+    alpha: float = 0.1
+    window: Profile = "bump"
+    periodic: bool = True
+    add_smooth: bool = False
+
+
+class Field:
+    """A noise whose columns are done: `emit` gives its rows, any number of times.
+
+    Parameters
+    ----------
+    h : ndarray of float32, shape (H, W, C)
+        The sample; along an axis that is longer than the texture's, its centre is taken.
+    noise : Noise
+    team : Team
+    progress : callable ``(stage, part)``
+        Called in the calling thread between blocks with the part of the stage that is done; may raise.
+
+    Raises
+    ------
+    ValueError
+        If the sample holds values that are not finite, or ``add_smooth`` is asked for at another size or without
+        ``periodic``.
+    """
+
+    def __init__(self, h: Real, noise: Noise, team: Team, progress: Progress) -> None:
+        if noise.add_smooth and not noise.periodic:
+            raise ValueError("The smooth component can be added only where it was taken out before.")
+        self.noise = noise
+        self._team = team
+        self._progress = progress
+        progress("spot", 0)
+        h = centre(h, noise.height, noise.width)
+        height, width, channels = h.shape
+        self._top = (noise.height - height) // 2
+        self._smooth: SmoothSpectrum | None = None
+        if (height, width) == (noise.height, noise.width):
+            if noise.periodic:
+                self._smooth = SmoothSpectrum(h)
+            # What is taken off first need only be near the mean: the rest of the mean is read off the transforms.
+            near = h[::8, ::8].mean(axis=(0, 1), dtype=np.float64).astype(np.float32)
+            self._spectrum = self._transform_rows(h.transpose(2, 0, 1), near)
+            self.mean = near + self._spectrum[:, :, 0].real.sum(axis=1, dtype=np.float64) / (height * width)
+        elif noise.add_smooth:
+            raise ValueError("The smooth component can be added only to a texture of the sample's own size.")
+        else:
+            p = periodic_planes(h, team.threads) if noise.periodic else h.transpose(2, 0, 1).copy()
+            self.mean = p.mean(axis=(1, 2), dtype=np.float64)
+            spot = make_spot(p, self.mean, noise.height, noise.width, noise.alpha, noise.window)
+            self._spectrum = self._transform_rows(spot.planes, np.zeros(channels, np.float32))
+        if not np.isfinite(self.mean).all():
+            raise ValueError("The sample holds values that are not finite.")
+
+    def _transform_rows(self, planes: Real, offsets: Real) -> Complex:
+        """Transforms along x of planes − offsets, centred: (C, rows of the spot, width // 2 + 1)."""
+        (channels, high, wide), width = planes.shape, self.noise.width
+        left = (width - wide) // 2
+        spectrum = np.empty((channels, high, width // 2 + 1), np.complex64)
+
+        def transform(rows: tuple[int, int]) -> None:
+            begin, end = rows
+            padded = np.zeros((end - begin, width), np.float32)
+            for channel, offset in enumerate(offsets):
+                np.subtract(planes[channel, begin:end], offset, out=padded[:, left : left + wide])
+                spectrum[channel, begin:end] = scipy.fft.rfft(padded, workers=1)
+
+        self._team.run(transform, row_blocks(high), lambda part: self._progress("spot", part))
+        return spectrum
+
+    def random(self, block: tuple[int, int]) -> Complex:
+        """One block of columns of the random spectrum."""
+        return random_block(self.noise.height, self.noise.width, block, self.noise.seed, self.noise.rayleigh)
+
+    def spectra(self, block: tuple[int, int], random: Complex) -> Iterator[Complex]:
+        """One block of columns of the noise's spectrum, channel by channel, without the mean.
+
+        ``random`` is that block of the random spectrum. Not after `randomise`.
+        """
+        noise, (first, last) = self.noise, block
+        smooths = self._smooth.block(first, last) if self._smooth else None
+        for rows in self._spectrum[:, :, first:last]:
+            spectrum: Complex
+            if len(rows) == noise.height:
+                spectrum = scipy.fft.fft(rows, axis=0, workers=1)
+            else:
+                padded = np.zeros((noise.height, last - first), np.complex64)
+                padded[self._top : self._top + len(rows)] = rows
+                spectrum = scipy.fft.fft(padded, axis=0, overwrite_x=True, workers=1)
+            if smooths is not None:
+                smooth = next(smooths)
+                spectrum -= smooth
+            if noise.phase == "replace":
+                spectrum[:] = np.abs(spectrum)
+            spectrum *= random
+            if first == 0:
+                spectrum[0, 0] = 0
+            if noise.add_smooth:
+                spectrum += smooth
+            yield spectrum
+
+    def room(self) -> Complex:
+        """Where columns that are done can go, (C, height, width // 2 + 1): the field's own array, if it is so large."""
+        if self._spectrum.shape[1] == self.noise.height:
+            return self._spectrum
+        return np.empty((len(self.mean), self.noise.height, self.noise.width // 2 + 1), np.complex64)
+
+    def randomise(self) -> "Field":
+        """Do the columns; needed once before `emit`."""
+        noise, done = self.noise, self.room()
+
+        def transform(block: tuple[int, int]) -> None:
+            columns = slice(*block)
+            for plane, spectrum in zip(done, self.spectra(block, self.random(block)), strict=True):
+                plane[:, columns] = scipy.fft.ifft(spectrum, axis=0, overwrite_x=True, workers=1)
+
+        self._team.run(transform, column_blocks(noise.width), lambda part: self._progress("random phase", part))
+        self._spectrum = done
+        return self
+
+    def power(self) -> Real:
+        """Squared modulus of the noise's half spectrum, the mean over the channels, instead of `randomise`.
+
+        Returns
+        -------
+        ndarray of float32, shape (height, width // 2 + 1)
+        """
+        noise = self.noise
+        power = np.zeros((noise.height, noise.width // 2 + 1), np.float32)
+
+        def measure(block: tuple[int, int]) -> None:
+            columns = power[:, slice(*block)]
+            for spectrum in self.spectra(block, self.random(block)):
+                columns += spectrum.real**2 + spectrum.imag**2
+            columns /= len(self.mean)
+
+        self._team.run(measure, column_blocks(noise.width), lambda part: self._progress("output-spectrum", part))
+        return power
+
+    def emit(self, sink: Sink, stage: str = "texture") -> None:
+        """Hand every row block to ``sink(first row, planes)``, from the team's threads and in any order.
+
+        The planes, one for each channel, are (rows, width) float32, the mean included; they are made as the sink
+        asks for them and belong to it.
+        """
+
+        def transform(rows: tuple[int, int]) -> None:
+            sink(rows[0], self._planes(*rows))
+
+        self._team.run(transform, row_blocks(self.noise.height), lambda part: self._progress(stage, part))
+
+    def _planes(self, begin: int, end: int) -> Iterator[Real]:
+        for channel, mean in enumerate(self.mean.astype(np.float32)):
+            plane: Real = scipy.fft.irfft(self._spectrum[channel, begin:end], n=self.noise.width, workers=1)
+            plane += mean
+            yield plane
+
+
+def synthesize(h: Real, noise: Noise, threads: int = 1, progress: Progress | None = None) -> Real:
+    """The noise of a sample as one array of floats.
+
+    Parameters
+    ----------
+    h : ndarray of float32, shape (H, W) or (H, W, C)
+    noise : Noise
+    threads : int
+    progress : callable ``(stage, part)``, optional
+
+    Returns
+    -------
+    ndarray of float32, shape (noise.height, noise.width) or (noise.height, noise.width, C)
+    """
+    if h.ndim == 2:
+        return synthesize(h[:, :, None], noise, threads, progress)[:, :, 0]
+    texture = np.empty((noise.height, noise.width, h.shape[2]), np.float32)
+    with Team(threads) as team:
+        Field(h, noise, team, progress or (lambda stage, part: None)).randomise().emit(into(texture))
+    return texture

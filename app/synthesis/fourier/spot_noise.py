@@ -1,0 +1,109 @@
+"""Spot noise: a spot convolved, on the torus, with a white noise that all channels share.
+
+    Z = m + (h̃ − m̃) ∗ W,   Ẑ(k) = ĥ(k) Ŵ(k) for k ≠ 0,   E|Ŵ(k)|² = 1,
+
+so that the covariance of Z is the autocorrelation of the spot. W is a Gaussian white noise for the asymptotic
+discrete spot noise, a normalised count of random points for the discrete one. The coefficient at the origin is the
+spot's mean alone.
+
+References
+----------
+Galerne, Gousseau, Morel, "Random Phase Textures: Theory and Synthesis", IEEE TIP 2011: section 2.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+import scipy.fft
+
+from app.synthesis.arrays import Complex, Progress, Real
+from app.synthesis.fourier.periodic import periodic_planes
+from app.synthesis.fourier.spectral import random_spectrum
+from app.synthesis.fourier.spot import Profile, Spot, centre, make_spot
+
+
+def sample_spot(
+    h: Real, height: int, width: int, alpha: float = 0.1, window: Profile = "bump", threads: int = 1
+) -> Spot:
+    """The spot that RPN and ADSN use: the periodic component of a sample, extended to the texture's size.
+
+    Parameters
+    ----------
+    h : ndarray of float32, shape (H, W, C)
+        Along an axis that is longer than the texture's, its centre is taken.
+    height, width : int
+        Size of the texture.
+    alpha, window
+        See `app.synthesis.fourier.spot.window`.
+    threads : int
+
+    Returns
+    -------
+    Spot
+    """
+    p = periodic_planes(centre(h, height, width), threads)
+    return make_spot(p, p.mean(axis=(1, 2), dtype=np.float64), height, width, alpha, window)
+
+
+def transform(plane: Real, spot: Spot, threads: int = 1) -> Complex:
+    """Half spectrum, shape (height, width // 2 + 1), of a plane on the spot's rectangle with zeros around it."""
+    if plane.shape != (spot.height, spot.width):
+        whole = np.zeros((spot.height, spot.width), np.float32)
+        whole[spot.top : spot.top + plane.shape[0], spot.left : spot.left + plane.shape[1]] = plane
+        plane = whole
+    spectrum: Complex = scipy.fft.rfft2(plane, workers=threads)
+    return spectrum
+
+
+def convolve(
+    spots: Sequence[Spot],
+    noises: Sequence[Complex],
+    threads: int = 1,
+    progress: Progress | None = None,
+    begin: float = 0.0,
+) -> Real:
+    """Spot noise of given white noises: the sum of those of several spots that share their mean.
+
+    Parameters
+    ----------
+    spots : sequence of Spot
+        Of one size, and with the same mean: the sum has it once.
+    noises : sequence of ndarray of complex64, shape (height, width // 2 + 1)
+        Ŵ on the half spectrum, one for each spot; what it says at the origin is not looked at.
+    threads : int
+        For the transforms; the result does not depend on it.
+    progress : callable ``(stage, part)``, optional
+        Called between channels; what it raises stops the work.
+    begin : float
+        Part of the work that is done when this begins.
+
+    Returns
+    -------
+    ndarray of float32, shape (height, width, C)
+    """
+    first = spots[0]
+    texture = np.empty((len(first.planes), first.height, first.width), np.float32)
+    for channel, mean in enumerate(first.mean):
+        total: Complex | None = None
+        for number, (spot, noise) in enumerate(zip(spots, noises, strict=True)):
+            if progress:
+                done = (channel + number / len(spots)) / len(texture)
+                progress("texture", begin + (1 - begin) * done)
+            spectrum = transform(spot.planes[channel], spot, threads)
+            spectrum *= noise
+            total = spectrum if total is None else np.add(total, spectrum, out=total)
+        assert total is not None
+        total[0, 0] = 0
+        made = scipy.fft.irfft2(total, s=texture.shape[1:], overwrite_x=True, workers=threads)
+        np.add(made, np.float32(mean), out=texture[channel])
+    if progress:
+        progress("texture", 1.0)
+    return texture.transpose(1, 2, 0)
+
+
+def asymptotic(spot: Spot, seed: int, threads: int = 1, progress: Progress | None = None) -> Real:
+    """Asymptotic discrete spot noise of a spot, with the phase and modulus of `adsn` at this seed.
+
+    Parameters and result are those of `convolve`; the white noise is that of `random_spectrum`.
+    """
+    return convolve([spot], [random_spectrum(spot.height, spot.width, seed, rayleigh=True)], threads, progress)

@@ -1,0 +1,61 @@
+"""A random phase in three dimensions, on the half spectrum of a film.
+
+The transform of a real film of T frames is kept as `scipy.fft.rfftn` over (t, y, x) gives it: k₀ = 0 … T − 1 in time,
+k₁ = 0 … H − 1 down and k₂ = 0 … W // 2 across; the other half follows from ĥ(−k) = conj ĥ(k). Inside column 0, and for
+an even W inside column W / 2, both k and −k are present. They lie in the rows k₁ and −k₁, so these two are drawn
+together, each pair from a stream of its own.
+"""
+
+import numpy as np
+from numpy.random import SFC64, SeedSequence
+
+from app.synthesis.arrays import Complex
+from app.synthesis.fourier.spectral import STATES, phase_table, symmetrise
+
+
+def pair(row: int, height: int) -> list[int]:
+    """The rows k₁ and −k₁.
+
+    Examples
+    --------
+    >>> pair(1, 6), pair(0, 6), pair(3, 6)
+    ([1, 5], [0], [3])
+    """
+    return [row] if (2 * row) % height == 0 else [row, height - row]
+
+
+def rows_of_phase(shape: tuple[int, int, int], row: int, flat: Complex, seed: int) -> Complex:
+    """``exp(iθ)`` at the rows k₁ and −k₁ of the half spectrum of a film; it depends on no other row.
+
+    Parameters
+    ----------
+    shape : tuple of int
+        Frames, height and width of the film.
+    row : int
+        k₁, 0 to height // 2.
+    flat : ndarray of complex64, shape (height, width // 2 + 1)
+        The phase at frequency 0 in time: `random_spectrum` of this seed, so that a film that stands still has the
+        phase of `app.synthesis.gaussian.rpn`.
+    seed : int
+
+    Returns
+    -------
+    ndarray of complex64, shape (frames, 2, width // 2 + 1), or (frames, 1, …) where the two rows are the same
+    """
+    frames, height, width = shape
+    rows = pair(row, height)
+    size = (frames, len(rows), width // 2 + 1)
+    count = int(np.prod(size))
+    words = SFC64(SeedSequence(seed, spawn_key=(row, 1))).random_raw(-(-count // 4)).view(np.uint16)[:count]
+    words = words.reshape(size)
+    values: Complex = np.take(phase_table(), words, mode="clip")
+    for column in {0, width // 2} if width % 2 == 0 else {0}:
+        if len(rows) == 2:
+            values[0, 1, column] = values[0, 0, column].conj()
+            values[1:, 1, column] = values[:0:-1, 0, column].conj()
+        else:
+            symmetrise(values[:, 0, column])
+            if frames % 2 == 0:
+                values[frames // 2, 0, column] = 1 if words[frames // 2, 0, column] < STATES // 2 else -1
+    values[0] = flat[rows]
+    return values

@@ -1,0 +1,264 @@
+"""Heeger and Bergen's pyramid-based synthesis: noise whose pixels and sub-bands take the sample's histograms.
+
+In the principal axes of the sample's colours, each channel alone: white noise takes the histogram of the sample;
+then, again and again, every band of its steerable pyramid takes the histogram of the sample's band, the pyramid is
+put together, and the result takes the sample's histogram once more.
+
+The sample's borders do not match, which the pyramid, periodic as it is, would take for edges. ``periodic`` gives it
+the sample's periodic component. ``mirror`` gives it the sample with its mirror images beside it, and keeps of each
+band the sample's own part, so that the mirror images' orientations are not counted.
+
+References
+----------
+Heeger, Bergen, "Pyramid-Based Texture Analysis/Synthesis", SIGGRAPH 1995; Briand, Vacher, Galerne, Rabin, "The
+Heeger-Bergen Pyramid-Based Texture Synthesis Algorithm", IPOL 2014.
+"""
+
+import math
+from dataclasses import dataclass
+from itertools import product
+from typing import Literal
+
+import numpy as np
+from numpy.random import SFC64, Generator, SeedSequence
+
+from app.synthesis.arrays import Complex, Progress, Real
+from app.synthesis.fourier.periodic import smooth_planes
+from app.synthesis.parallel import Team, Work
+from app.synthesis.pyramid.colour_space import ColourSpace
+from app.synthesis.pyramid.histogram import match, quantiles
+from app.synthesis.pyramid.pyramid import Band, SteerablePyramid, Total, to_image, to_spectrum
+
+Edges = Literal["periodic", "mirror"]
+
+FINEST = Band(0, None)
+MOST = 1 << 20  # values of a band that are kept: of a huge crop's, quantiles this dense
+
+
+@dataclass(frozen=True)
+class Decomposition:
+    """How images are taken apart: scales and orientations of the pyramid, and what becomes of the sample's borders."""
+
+    scales: int = 4
+    orientations: int = 4
+    edges: Edges = "periodic"
+
+
+class Channel:
+    """One channel's sub-bands: a real steerable pyramid of an image, or of it with its mirror images beside it."""
+
+    def __init__(self, plane: Real, decomposition: Decomposition) -> None:
+        self._mirror = decomposition.edges == "mirror"
+        if self._mirror:
+            height, width = plane.shape
+            plane = np.pad(plane, ((0, height), (0, width)), mode="symmetric")
+        height, width = plane.shape
+        self._pyramid = SteerablePyramid(height, width, decomposition.scales, decomposition.orientations)
+        self._spectrum = to_spectrum(plane)
+
+    def band(self, band: Band) -> Real:
+        """The image's own part of a sub-band."""
+        values = self._pyramid.filter(band).analyse(self._spectrum)
+        height, width = values.shape
+        return values[: (height + 1) // 2, : (width + 1) // 2] if self._mirror else values
+
+
+class Sample:
+    """What the synthesis takes from a sample: its colours, and the ordered values of its channels and their bands.
+
+    Parameters
+    ----------
+    h : ndarray of float32, shape (H, W, C)
+    decomposition : Decomposition
+    pyramid : SteerablePyramid
+        The texture's: no more values are kept of a band than the texture's band has, or than `MOST`.
+    work : Work
+
+    Attributes
+    ----------
+    space : ColourSpace
+    channels : ndarray of float32, shape (C, H, W)
+        The principal components.
+    """
+
+    def __init__(self, h: Real, decomposition: Decomposition, pyramid: SteerablePyramid, work: Work) -> None:
+        if not np.isfinite(h).all():
+            raise ValueError("The sample holds values that are not finite.")
+        planes = h.transpose(2, 0, 1).astype(np.float32, order="C")
+        if decomposition.edges == "periodic":
+            planes -= smooth_planes(h, work.threads)
+        self.space = ColourSpace.of(planes)
+        self.channels = self.space.forward(planes)
+        self.pixels = [_ordered(channel, math.prod(pyramid.shape(FINEST))) for channel in self.channels]
+        self.bands: dict[tuple[int, Band], Real] = {}
+        taken_apart = [Channel(channel, decomposition) for channel in self.channels]
+
+        def analyse(item: tuple[int, Band]) -> None:
+            work.alive()
+            channel, band = item
+            self.bands[item] = _ordered(taken_apart[channel].band(band), min(MOST, math.prod(pyramid.shape(band))))
+
+        work.run("sample", analyse, list(product(range(len(planes)), pyramid.bands)))
+
+
+class Synthesis:
+    """A texture on its way: noise with the sample's histogram at first, then iteration by iteration.
+
+    Parameters
+    ----------
+    sample : Sample
+    pyramid : SteerablePyramid
+        Of the texture's size.
+    seed : int
+        Not negative.
+    work : Work
+    """
+
+    def __init__(self, sample: Sample, pyramid: SteerablePyramid, seed: int, work: Work) -> None:
+        self._sample, self._pyramid, self._work = sample, pyramid, work
+        self._planes: list[Real] = [np.empty(0, np.float32)] * len(sample.pixels)
+        self._spectra: list[Complex] = [np.empty(0, np.complex64)] * len(sample.pixels)
+
+        def begin(channel: int) -> None:
+            noise = Generator(SFC64(SeedSequence(seed, spawn_key=(channel,))))
+            self.take(channel, noise.standard_normal(pyramid.shape(FINEST), np.float32))
+
+        work.run("noise", begin, range(len(sample.pixels)))
+
+    def iterate(self, stage: str) -> None:
+        """Give all bands, and then the pixels, the sample's histograms."""
+        totals = [Total(self._pyramid) for _ in self._planes]
+
+        def match_band(item: tuple[int, Band]) -> None:
+            channel, band = item
+            window = self._pyramid.filter(band)
+            values = window.analyse(self._spectra[channel])
+            self._work.alive()
+            match(values, self._sample.bands[item], self._work.alive)
+            part = window.synthesise(values)
+            self._work.alive()
+            total = totals[channel].add(band, window, part)
+            if total is not None:
+                self.take(channel, to_image(total, self._pyramid.shape(FINEST)))
+
+        self._work.run(stage, match_band, list(product(range(len(self._planes)), self._pyramid.bands)))
+
+    def take(self, channel: int, plane: Real) -> None:
+        """Go on from a plane, which is given the sample's pixel histogram first."""
+        self._work.alive()
+        match(plane, self._sample.pixels[channel], self._work.alive)
+        self._planes[channel], self._spectra[channel] = plane, to_spectrum(plane)
+
+    def channel(self, number: int) -> Real:
+        """A principal component of the texture as it is."""
+        return self._planes[number]
+
+    def planes(self, limit: int | None = None) -> Real:
+        """The texture as it is in the sample's colours, shape (C, H, W); of no more than ``limit`` rows and columns."""
+        return self._sample.space.back(np.stack([plane[:limit, :limit] for plane in self._planes]))
+
+    def distances(self, stage: str, channel: int = 0) -> dict[Band, float]:
+        """How far a channel's sub-bands are from the sample's histograms.
+
+        Returns
+        -------
+        dict of Band to float
+            Root mean square difference of the quantiles (the Wasserstein distance), in deviations of the sample's
+            band.
+        """
+        distances = dict.fromkeys(self._pyramid.bands, 0.0)
+
+        def measure(band: Band) -> None:
+            self._work.alive()
+            found = np.sort(self._pyramid.filter(band).analyse(self._spectra[channel]), axis=None)
+            self._work.alive()
+            asked = quantiles(self._sample.bands[channel, band], len(found))
+            distances[band] = float(np.sqrt(np.square(found - asked).mean())) / (float(asked.std()) or 1)
+
+        self._work.run(stage, measure, self._pyramid.bands)
+        return distances
+
+
+def _ordered(values: Real, count: int) -> Real:
+    """Values in order, or ``count`` quantiles of them if there are more."""
+    ordered = np.sort(values, axis=None)
+    return quantiles(ordered, count) if count < len(ordered) else ordered
+
+
+def heeger_bergen(
+    h: Real,
+    height: int | None = None,
+    width: int | None = None,
+    *,
+    seed: int = 0,
+    decomposition: Decomposition | None = None,
+    iterations: int = 5,
+    add_smooth: bool = False,
+    threads: int = 1,
+    progress: Progress = lambda stage, part: None,
+) -> Real:
+    """Texture of any size with the pixel and sub-band histograms of an image.
+
+    Parameters
+    ----------
+    h : ndarray of float32, shape (H, W) or (H, W, C)
+        The sample; any number of channels, any range, finite.
+    height, width : int, optional
+        Size of the texture; default: the sample's.
+    seed : int
+        Not negative; of the noise at the start.
+    decomposition : Decomposition, optional
+    iterations : int
+        At least 0, which gives the noise with the sample's pixel histogram.
+    add_smooth : bool
+        Add the smooth component back; for a texture of the sample's own size and periodic edges only.
+    threads : int
+        The result does not depend on it.
+    progress : callable ``(stage, part)``, optional
+        Called between pieces of work; what it raises stops the work.
+
+    Returns
+    -------
+    ndarray of float32, shape (height, width) or (height, width, C)
+        Periodic. Each of its principal components has the sample's histogram exactly.
+
+    Raises
+    ------
+    ValueError
+        If values are not finite, or ``add_smooth`` cannot be.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> h = np.random.default_rng(0).random((32, 40), np.float32)
+    >>> z = heeger_bergen(h, 48, 50, seed=7)
+    >>> z.shape, bool(abs(z.std() - h.std()) < 0.01)
+    ((48, 50), True)
+    """
+    if h.ndim == 2:
+        return heeger_bergen(
+            h[:, :, None],
+            height,
+            width,
+            seed=seed,
+            decomposition=decomposition,
+            iterations=iterations,
+            add_smooth=add_smooth,
+            threads=threads,
+            progress=progress,
+        )[:, :, 0]
+    decomposition = decomposition or Decomposition()
+    height, width = height or h.shape[0], width or h.shape[1]
+    if add_smooth and (decomposition.edges != "periodic" or (height, width) != h.shape[:2]):
+        raise ValueError("The smooth component needs periodic edges and a texture of the sample's own size.")
+    pyramid = SteerablePyramid(height, width, decomposition.scales, decomposition.orientations)
+    with Team(threads) as team:
+        work = Work(team, progress)
+        sample = Sample(h, decomposition, pyramid, work)
+        synthesis = Synthesis(sample, pyramid, seed, work)
+        for iteration in range(1, iterations + 1):
+            synthesis.iterate(f"iteration {iteration}")
+    planes = synthesis.planes()
+    if add_smooth:
+        planes += smooth_planes(h, threads)
+    return planes.transpose(1, 2, 0)

@@ -1,0 +1,79 @@
+"""From float values to the whole numbers of a picture: cut off, or stretch; never wrap."""
+
+import threading
+from collections.abc import Callable, Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.synthesis.arrays import Real
+
+Sink = Callable[[int, Iterable[Real]], None]
+Rows = Callable[[int, NDArray[np.unsignedinteger]], None]
+
+
+def into(texture: Real) -> Sink:
+    """A sink that puts all it is handed into an array (height, width, C)."""
+
+    def store(first: int, planes: Iterable[Real]) -> None:
+        for channel, plane in enumerate(planes):
+            texture[first : first + len(plane), :, channel] = plane
+
+    return store
+
+
+class Extent:
+    """A sink that only looks: ``low`` and ``high`` are the least and greatest values seen, and at least [0, peak]."""
+
+    def __init__(self, peak: float) -> None:
+        self.low, self.high = 0.0, float(peak)
+        self._lock = threading.Lock()
+
+    def __call__(self, first: int, planes: Iterable[Real]) -> None:
+        for plane in planes:
+            low, high = float(plane.min()), float(plane.max())
+            with self._lock:
+                self.low, self.high = min(self.low, low), max(self.high, high)
+
+
+class Levels:
+    """A sink that rounds values of [low, high] to the whole numbers 0 … peak, cutting off what is outside.
+
+    With [low, high] = [0, the sample's peak] values keep their place and those outside are cut off. With an
+    `Extent`'s, the histogram is stretched: the same affine map for all channels takes everything into the range,
+    and is the identity if nothing was outside.
+
+    Parameters
+    ----------
+    rows : callable ``(first row, block)``
+        Gets blocks (n, W, C), contiguous, uint8 or uint16 as ``peak`` asks for, valid only during the call.
+    channels : int
+        Planes that a call brings.
+    low, high : float
+        What becomes 0 and ``peak``.
+    peak : int
+        255 or 65535.
+    """
+
+    def __init__(self, rows: Rows, channels: int, low: float, high: float, peak: int) -> None:
+        self._rows, self._channels = rows, channels
+        self._scale = np.float32(peak / (high - low))
+        self._shift = np.float32(0.5 - low * peak / (high - low))
+        self._limit = np.float32(peak + 0.5).view(np.int32)
+        self._type = np.uint8 if peak == 255 else np.uint16
+
+    def __call__(self, first: int, planes: Iterable[Real]) -> None:
+        pixels: NDArray[np.unsignedinteger] | None = None
+        for channel, plane in enumerate(planes):
+            if self._scale != 1:
+                np.multiply(plane, self._scale, out=plane)
+            np.add(plane, self._shift, out=plane)
+            # The bits of floats sort as whole numbers do (those below 0 too are below 0), which are faster to clip.
+            bits = plane.view(np.int32)
+            np.clip(bits, 0, self._limit, out=bits)
+            if pixels is None:
+                pixels = np.empty((*plane.shape, self._channels), self._type)
+            # Rounded in the plane first: numpy is slow where it casts and strides at once.
+            pixels[:, :, channel] = plane.astype(self._type)
+        if pixels is not None:
+            self._rows(first, pixels)

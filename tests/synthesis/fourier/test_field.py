@@ -1,0 +1,113 @@
+"""The fused engine agrees with the plain formulas, written here a second time in double precision."""
+
+import numpy as np
+import pytest
+
+from app.synthesis.fourier.field import Field, Noise, synthesize
+from app.synthesis.fourier.spectral import random_spectrum
+from app.synthesis.parallel import Team
+
+
+def plain_periodic(h):
+    """Δp = Δᵢh by full complex transforms of the Laplacian."""
+    height, width = h.shape[:2]
+    inner = np.zeros_like(h)
+    inner[1:] += h[1:] - h[:-1]
+    inner[:-1] += h[:-1] - h[1:]
+    inner[:, 1:] += h[:, 1:] - h[:, :-1]
+    inner[:, :-1] += h[:, :-1] - h[:, 1:]
+    k, m = np.meshgrid(np.arange(height) / height, np.arange(width) / width, indexing="ij")
+    laplacian = 4 - 2 * np.cos(2 * np.pi * k) - 2 * np.cos(2 * np.pi * m)
+    laplacian[0, 0] = 1
+    spectrum = np.fft.fft2(inner, axes=(0, 1)) / laplacian[:, :, None]
+    spectrum[0, 0] = h.sum((0, 1))
+    return np.fft.ifft2(spectrum, axes=(0, 1)).real
+
+
+def plain_bump(n, alpha):
+    """Primitive by the trapezium rule on a fine grid."""
+    t = np.linspace(0, alpha, 20001)
+    with np.errstate(divide="ignore"):
+        values = np.exp(-1 / (1 - (2 * t / alpha - 1) ** 2))
+    primitive = np.append(0, np.cumsum(values[1:] + values[:-1]))
+    x = (np.arange(n) + 0.5) / n
+    phi = np.interp(np.minimum(x, 1 - x), t, primitive / primitive[-1])
+    return phi / np.sqrt((phi**2).mean())
+
+
+def plain(h, noise):
+    """RPN and ADSN by the letter of the articles, and the extended spot with the variance of p."""
+    p = plain_periodic(h.astype(np.float64)) if noise.periodic else h.astype(np.float64)
+    (rows, columns), mean = h.shape[:2], p.mean((0, 1))
+    spot = np.zeros((noise.height, noise.width, h.shape[2]))
+    down = plain_bump(rows, noise.alpha) if noise.height > rows else np.ones(rows)
+    across = plain_bump(columns, noise.alpha) if noise.width > columns else np.ones(columns)
+    top, left = (noise.height - rows) // 2, (noise.width - columns) // 2
+    spot[top : top + rows, left : left + columns] = (p - mean) * down[:, None, None] * across[None, :, None]
+    spot *= np.sqrt(p.var((0, 1)).sum() / spot.var((0, 1)).sum())
+    half = random_spectrum(noise.height, noise.width, noise.seed, noise.rayleigh).astype(np.complex128)
+    half[0, 0] = 0
+    factors = np.fft.fft2(np.fft.irfft2(half, s=(noise.height, noise.width)))
+    spectrum = np.fft.fft2(spot, axes=(0, 1))
+    if noise.phase == "replace":
+        spectrum = np.abs(spectrum)
+    z = np.fft.ifft2(spectrum * factors[:, :, None], axes=(0, 1))
+    assert np.abs(z.imag).max() <= 1e-9 * np.abs(z.real).max()
+    smooth = h - p if noise.add_smooth else 0
+    return mean + z.real + smooth
+
+
+@pytest.mark.parametrize("rayleigh", [False, True])
+@pytest.mark.parametrize("options", [{}, {"phase": "replace"}, {"add_smooth": True}, {"periodic": False}])
+@pytest.mark.parametrize("size", [(64, 64), (65, 97), (101, 128), (1, 50), (50, 1), (2, 200)])
+def test_at_the_same_size_it_agrees_with_the_plain_formula(size, options, rayleigh):
+    h = np.random.default_rng(0).uniform(0, 255, (*size, 3)).astype(np.float32)
+    noise = Noise(*size, seed=11, rayleigh=rayleigh, **options)
+    np.testing.assert_allclose(synthesize(h, noise, threads=2), plain(h, noise), atol=255 * 1e-5)
+
+
+@pytest.mark.parametrize("rayleigh", [False, True])
+@pytest.mark.parametrize("options", [{}, {"phase": "replace"}, {"periodic": False}])
+@pytest.mark.parametrize("size", [(128, 128), (131, 99), (64, 300), (70, 64)])
+def test_at_a_larger_size_it_agrees_with_the_plain_formula(size, options, rayleigh):
+    h = np.random.default_rng(1).uniform(0, 255, (64, 64, 2)).astype(np.float32)
+    noise = Noise(*size, seed=12, rayleigh=rayleigh, alpha=0.2, **options)
+    np.testing.assert_allclose(synthesize(h, noise, threads=2), plain(h, noise), atol=255 * 1e-5)
+
+
+@pytest.mark.parametrize("size", [(40, 50), (90, 77)])
+def test_the_power_is_the_squared_modulus_of_the_noise(size):
+    h = np.random.default_rng(2).uniform(0, 255, (40, 50, 3)).astype(np.float32)
+    noise = Noise(*size, seed=3, rayleigh=True)
+    with Team(2) as team:
+        power = Field(h, noise, team, lambda stage, part: None).power()
+    z = synthesize(h, noise)
+    expected = (np.abs(np.fft.rfft2(z - z.mean((0, 1), dtype=np.float64), axes=(0, 1))) ** 2).mean(2)
+    np.testing.assert_allclose(power, expected, atol=1e-5 * expected.max())
+
+
+@pytest.mark.parametrize("order", ["rows", "columns"])
+def test_it_does_not_mind_how_the_sample_lies_in_memory(order):
+    h = np.random.default_rng(4).uniform(0, 255, (30, 40, 3)).astype(np.float32)
+    other = np.asfortranarray(h) if order == "columns" else np.repeat(h, 2, axis=0)[::2]
+    for size in ((30, 40), (60, 61)):
+        assert (synthesize(other, Noise(*size)) == synthesize(h, Noise(*size))).all()
+
+
+def test_the_sample_is_not_changed():
+    h = np.random.default_rng(5).uniform(0, 255, (30, 40, 3)).astype(np.float32)
+    before = h.copy()
+    synthesize(h, Noise(30, 40))
+    synthesize(h, Noise(60, 41))
+    synthesize(h, Noise(60, 41, periodic=False))
+    assert (h == before).all()
+
+
+def test_rows_come_each_once_and_as_often_as_asked_for():
+    h = np.random.default_rng(6).uniform(0, 255, (30, 40, 1)).astype(np.float32)
+    with Team(2) as team:
+        field = Field(h, Noise(150, 90), team, lambda stage, part: None).randomise()
+        for _ in range(2):
+            seen = []
+            field.emit(lambda first, planes, seen=seen: seen.extend(first + y for y in range(len(next(planes)))))
+            assert sorted(seen) == list(range(150))

@@ -1,0 +1,91 @@
+"""The three-dimensional mosaic: deviation kept, no seams, and still parts that do not stay still."""
+
+import numpy as np
+import pytest
+
+from app.synthesis.patchwork.cells import Window
+from app.synthesis.patchwork.video_mosaic import Mosaic, needed
+from app.synthesis.patchwork.video_patchwork import Clip
+from tests.synthesis.films import noise, size_of, steps, still, waves
+
+SIZE = 64
+
+
+def mosaic(film, frames=40, *, size=SIZE, interval=10, loop=True, tileable=True, sharpness=6, seed=4):
+    rng = np.random.default_rng(seed)
+    planes, shape = Clip(film).planes, (frames, size, size)
+    return Mosaic(planes, shape, grid=16, interval=interval, sharpness=sharpness, loop=loop, tileable=tileable, rng=rng)
+
+
+def made(film, frames=40, **options):
+    synthesis = mosaic(film, frames, **options)
+    return np.stack([synthesis.frame(number) for number in range(frames)])
+
+
+def test_mean_and_deviation_are_the_clips_in_cores_and_in_joins():
+    """White noise: 8 frames far apart of 4096 pixels tell the deviation to 1 %, of a tenth of them to 2 %.
+
+    Painting the cells black and white tells where they join: in between, where feathering would leave about half of
+    the variance.
+    """
+    film = noise()
+    synthesis = mosaic(film)
+    colours = np.random.default_rng(1).choice([0.0, 1.0], (len(synthesis.sources), 1)).astype(np.float32)
+    frames = range(0, 40, 5)
+    out = np.stack([synthesis.frame(number)[..., 0] for number in frames])
+    window = Window(0, SIZE, 0, SIZE)
+    painted = np.stack([synthesis.painted(number, window, np.repeat(colours, 3, 1))[..., 0] for number in frames])
+    joins = np.abs(painted - 0.5) < 0.1
+    assert joins.sum() > 1000
+    for where in (joins, ~joins):
+        assert out[where].mean() == pytest.approx(film.mean(), abs=2)
+        assert out[where].std() == pytest.approx(film.std(), rel=0.05)
+
+
+def test_what_stands_still_in_the_clip_does_not_in_the_mosaic():
+    """Frames further apart than patches last have nothing to do with each other; near ones do."""
+    film = still(channels=1)
+    out = made(film)
+    assert size_of(out[20] - out[0]) == pytest.approx(np.sqrt(2) * film.std(), rel=0.1)
+    assert 0 < size_of(out[1] - out[0]) < 0.5 * film.std()
+
+
+def test_in_a_loop_the_step_from_the_last_frame_to_the_first_is_like_any_other():
+    looped, ended = (steps(made(waves(), 30, loop=loop), 0) for loop in (True, False))
+    assert looped[-1] < 1.2 * looped[:-1].max()
+    assert ended[-1] > 2 * ended[:-1].max()
+
+
+@pytest.mark.parametrize("axis", [1, 2], ids=["top and bottom", "left and right"])
+def test_tileable_frames_have_no_seam(axis):
+    tiled, cut = (steps(made(waves(), frames=4, tileable=tileable), axis) for tileable in (True, False))
+    assert tiled[-1] < 1.2 * tiled[:-1].max()
+    assert cut[-1] > 1.25 * cut[:-1].max()
+
+
+@pytest.mark.parametrize(("loop", "tileable"), [(True, True), (False, False)], ids=["circular", "ends"])
+@pytest.mark.parametrize("sharpness", [1, 40])
+def test_a_clip_as_large_as_is_needed_is_large_enough_whatever_the_seed(loop, tileable, sharpness):
+    side, length = needed(70, 16), needed(30, 5)
+    film = noise(length, side, side)
+    for seed in range(3):
+        synthesis = mosaic(film, 30, size=70, interval=5, loop=loop, tileable=tileable, sharpness=sharpness, seed=seed)
+        out = np.stack([synthesis.frame(number) for number in (0, 17)])
+        assert np.isfinite(out).all()
+        assert out.std() > 10
+    with pytest.raises(ValueError, match="low >= high"):
+        mosaic(film[:, 1:], 30, size=70, interval=5, loop=loop, tileable=True)
+
+
+def test_a_constant_clip_gives_that_constant():
+    film = np.full((40, SIZE, SIZE, 3), (10, 100, 250), np.uint8)
+    assert np.abs(mosaic(film).frame(3) - (10, 100, 250)).max() < 0.01
+
+
+def test_cells_are_painted_alike_in_any_window():
+    synthesis = mosaic(noise(), tileable=False)
+    colours = np.random.default_rng(2).uniform(0, 255, (len(synthesis.sources), 3)).astype(np.float32)
+    whole = synthesis.painted(5, Window(0, SIZE, 0, SIZE), colours)
+    part = synthesis.painted(5, Window(20, 31, 40, SIZE), colours)
+    np.testing.assert_allclose(whole[20:31, 40:], part, rtol=1e-4)
+    assert whole.std() > 20

@@ -1,0 +1,56 @@
+"""Work that is shared out over threads reports while it runs, and stops when it is told to."""
+
+import threading
+
+import pytest
+
+from app.synthesis.parallel import Team, Work
+
+
+class StopError(Exception):
+    pass
+
+
+def test_the_progress_is_called_while_a_long_task_runs():
+    """The task ends only when it was called once more than at the beginning."""
+    again, parts = threading.Event(), []
+
+    def progress(stage, part):
+        assert stage == "waiting"
+        parts.append(part)
+        if len(parts) == 2:
+            again.set()
+
+    with Team(1) as team:
+        Work(team, progress).run("waiting", lambda item: again.wait(), [1, 2])
+    assert parts[:2] == [0, 0]
+    assert sorted(parts) == parts
+    assert set(parts) == {0, 0.5, 1}
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_tasks_that_never_end_stop_when_the_progress_raises(threads):
+    begun = []
+
+    def progress(stage, part):
+        if len(begun) == threads:
+            raise StopError
+
+    def task(item):
+        begun.append(item)
+        while True:
+            work.alive()
+
+    with Team(threads) as team:
+        work = Work(team, progress)
+        with pytest.raises(StopError):
+            work.run("endless", task, range(10))
+    assert len(begun) == threads
+
+
+def test_what_a_task_raises_comes_out():
+    def task(item):
+        raise StopError
+
+    with Team(2) as team, pytest.raises(StopError):
+        Work(team, lambda stage, part: None).run("failing", task, range(10))
