@@ -8,14 +8,12 @@ RUN python -m venv /opt/microtexture
 COPY requirements.lock ./
 RUN /opt/microtexture/bin/pip install --no-cache-dir --disable-pip-version-check --require-hashes -r requirements.lock
 COPY pyproject.toml README.md LICENSE ./
-COPY app app
-# Editable, so that templates, static files and samples are found beside app/ as in a checkout.
-RUN /opt/microtexture/bin/pip install --disable-pip-version-check --no-deps --no-build-isolation --editable . \
-    && /opt/microtexture/bin/pip uninstall --yes hatchling trove-classifiers pathspec pluggy pip \
-    && /opt/microtexture/bin/python -m compileall -q app
-COPY templates templates
-COPY static static
 COPY samples samples
+COPY static static
+COPY templates templates
+COPY app app
+RUN /opt/microtexture/bin/pip install --no-cache-dir --disable-pip-version-check --no-deps --no-build-isolation . \
+    && /opt/microtexture/bin/pip uninstall --yes hatchling trove-classifiers pathspec pluggy pip
 
 FROM ${PYTHON_IMAGE}
 LABEL org.opencontainers.image.title="Microtexture" \
@@ -25,8 +23,7 @@ RUN groupadd --gid 10001 microtexture \
     && useradd --uid 10001 --gid 10001 --no-create-home --home-dir /nonexistent --shell /usr/sbin/nologin microtexture \
     && install --directory --owner microtexture --group microtexture /data
 COPY --from=build /opt/microtexture /opt/microtexture
-COPY --from=build /srv/microtexture /srv/microtexture
-WORKDIR /srv/microtexture
+WORKDIR /data
 ENV PATH=/opt/microtexture/bin:$PATH \
     HOME=/tmp \
     PYTHONDONTWRITEBYTECODE=1 \

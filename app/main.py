@@ -5,15 +5,16 @@ import logging
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
 from functools import partial
-from importlib.metadata import version
 
 import anyio
 from fastapi import FastAPI
 from starlette.middleware import Middleware
 from starlette.staticfiles import StaticFiles
 
+from app import __version__
 from app.executor.dask import DaskExecutor
 from app.experiments.service import Service
+from app.samples import require_files
 from app.settings import ROOT, Settings
 from app.store.blobs import FileBlobs
 from app.store.sql import SqlStore
@@ -50,14 +51,20 @@ def create_app(settings: Settings | None = None, service: Service | None = None)
         Default: from the environment.
     service : Service, optional
         Default: `build_service`. The application starts and closes it.
+
+    Raises
+    ------
+    FileNotFoundError
+        If the templates, the static files or the bundled samples are missing.
     """
     settings = settings or Settings()
+    require_files(settings.samples_dir)
     service = service or build_service(settings)
     metrics = Metrics(service)
     app = FastAPI(
         title="Microtexture",
         summary="Texture synthesis by example",
-        version=version("microtexture"),
+        version=__version__,
         openapi_url=docs.OPENAPI_URL,
         docs_url=None,
         redoc_url=None,

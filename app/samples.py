@@ -1,11 +1,13 @@
 """What comes with the service: photographs, clips, a few drawings; what each shows, where to crop it, whom to thank."""
 
+import errno
 import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, get_args
 
 from app.images.crop import Rectangle
+from app.settings import ROOT
 
 CATALOGUE = "catalogue.json"
 
@@ -47,8 +49,10 @@ def bundled(directory: Path) -> list[BundledSample]:
 
     Raises
     ------
+    FileNotFoundError
+        If an entry names a file that is not there: the installation is broken.
     ValueError
-        If an entry is of an unknown kind or names a file that is not there: the installation is broken.
+        If an entry is of an unknown kind.
     """
     catalogue = directory / CATALOGUE
     if not catalogue.exists():
@@ -58,6 +62,35 @@ def bundled(directory: Path) -> list[BundledSample]:
 
 def _entry(directory: Path, *, file: str, kind: Kind, crop: str, **rest: str) -> BundledSample:
     path = directory / file
-    if kind not in get_args(Kind) or not path.is_file():
-        raise ValueError(f"{directory / CATALOGUE}: the entry {file!r} is of an unknown kind or without its file.")
+    if kind not in get_args(Kind):
+        raise ValueError(f"{directory / CATALOGUE}: the entry {file!r} is of the unknown kind {kind!r}.")
+    if not path.is_file():
+        raise _missing(path)
     return BundledSample(path=path, kind=kind, crop=Rectangle.parse(crop), **rest)
+
+
+def require_files(samples: Path) -> None:
+    """Check that everything the pages are made of is there.
+
+    Parameters
+    ----------
+    samples : pathlib.Path
+        The directory of the bundled samples; only Microtexture's own one must have a catalogue.
+
+    Raises
+    ------
+    FileNotFoundError
+        If the templates, the static files or the bundled samples are missing.
+    """
+    needed = [ROOT / "templates" / "base.html", ROOT / "static" / "css" / "base.css", samples]
+    if samples == ROOT / "samples":
+        needed.append(samples / CATALOGUE)
+    for path in needed:
+        if not path.exists():
+            raise _missing(path)
+    bundled(samples)
+
+
+def _missing(path: Path) -> FileNotFoundError:
+    reason = "A file of Microtexture is missing; install the wheel anew, or start from a whole checkout"
+    return FileNotFoundError(errno.ENOENT, reason, str(path))

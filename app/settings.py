@@ -7,7 +7,10 @@ from typing import Literal
 from pydantic import Field, SecretStr
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
-ROOT = Path(__file__).resolve().parent.parent
+_PACKAGE = Path(__file__).resolve().parent
+_INSTALLED = _PACKAGE / "assets"  # where pyproject.toml has a wheel keep templates, static files and samples
+ROOT = _INSTALLED if _INSTALLED.is_dir() else _PACKAGE.parent  # of the three: an installed wheel's, or the checkout
+
 MEBIBYTE = 1 << 20
 MOST = 1 << 50  # bytes, pixels or frames: beyond any machine, and far from what no float holds
 YEAR = 366 * 24 * 3600.0  # seconds

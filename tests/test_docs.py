@@ -8,7 +8,7 @@ import pytest
 from app.settings import ROOT, Settings
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-DOCUMENTS = [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")]
+DOCUMENTS = [*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")]
 OF_THE_MACHINE = {"workers", "threads", "samples_dir"}  # defaults that differ from machine to machine
 ROW = re.compile(r"^\| `MICROTEXTURE_(\w+)` \| (.+?) \| (.+) \|$", re.MULTILINE)
 

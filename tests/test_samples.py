@@ -78,7 +78,7 @@ def test_a_directory_without_a_catalogue_has_no_samples(tmp_path: Path) -> None:
 def test_an_entry_without_its_file_is_an_error_that_names_it(tmp_path: Path) -> None:
     entry = json.loads((SAMPLES / CATALOGUE).read_text(encoding="utf-8"))[0]
     (tmp_path / CATALOGUE).write_text(json.dumps([entry]), encoding="utf-8")
-    with pytest.raises(ValueError, match=entry["file"]):
+    with pytest.raises(FileNotFoundError, match=entry["file"]):
         bundled(tmp_path)
 
 

@@ -45,9 +45,11 @@ def serve(
     import uvicorn
 
     from app.cli.settings import read_settings
+    from app.samples import require_files
 
     with plain_errors():
         settings = read_settings()
+        require_files(settings.samples_dir)
         settings.data_dir.mkdir(parents=True, exist_ok=True)
         if not os.access(settings.data_dir, os.W_OK):
             raise PermissionError(errno.EACCES, "The data directory cannot be written", str(settings.data_dir))
