@@ -20,13 +20,13 @@ from app.store.blobs import FileBlobs
 from app.store.sql import SqlStore
 from app.web import catalogue_pages, docs, health, method_pages, pages, problems, structure_page, uploads
 from app.web.api import check, events, experiments, methods, outputs, samples, structure, synthesize
-from app.web.head import HeadAsGet
-from app.web.limits import BodyLimit
-from app.web.metrics import CountRequests, Metrics
+from app.web.middleware.body_limit import BodyLimit
+from app.web.middleware.cross_origin import CrossOrigin
+from app.web.middleware.head_as_get import HeadAsGet
+from app.web.middleware.metrics import CountRequests, Metrics
+from app.web.middleware.security_headers import SecurityHeaders
 from app.web.openapi import document
-from app.web.origin import CrossOrigin
-from app.web.security import SecurityHeaders
-from app.web.stopping import on_stop_signal
+from app.web.shutdown import on_stop_signal
 from app.worker import run_job
 
 log = logging.getLogger(__name__)

@@ -6,7 +6,7 @@ from fastapi import APIRouter, Request
 from starlette.responses import JSONResponse, Response
 
 from app.web.deps import ServiceDep
-from app.web.metrics import Metrics
+from app.web.middleware.metrics import Metrics
 from app.web.openapi import problems
 from app.web.problems import problem
 

@@ -14,7 +14,7 @@ from starlette.routing import Match
 from app import errors
 from app.methods.fields import reason
 from app.numbers import said
-from app.web.security import API_PREFIX, security_headers
+from app.web.headers import API_PREFIX, security_headers
 
 MEDIA_TYPE = "application/problem+json"
 RETRY_SECONDS = 10

@@ -16,7 +16,7 @@ from starlette.exceptions import HTTPException
 
 from app.errors import TooLargeError
 from app.web.deps import get_settings
-from app.web.limits import size
+from app.web.middleware.body_limit import size
 
 if TYPE_CHECKING:
     from python_multipart.multipart import MultipartCallbacks

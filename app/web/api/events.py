@@ -14,7 +14,7 @@ from app.web.api.experiments import ExperimentId
 from app.web.api.records import API
 from app.web.deps import ServiceDep
 from app.web.openapi import problems
-from app.web.stopping import unless_stopping
+from app.web.shutdown import unless_stopping
 
 router = APIRouter(prefix=f"{API}/experiments", tags=["experiments"])
 

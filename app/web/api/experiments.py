@@ -19,7 +19,7 @@ from app.web.api.prefer import LONGEST, wait_seconds
 from app.web.api.records import API, ExperimentList, ExperimentRecord
 from app.web.deps import ServiceDep, TokenDep, base_url, remember_owner
 from app.web.openapi import EXAMPLE_METHOD, EXAMPLE_SAMPLE, OWNER, parameters_schema, problems
-from app.web.stopping import unless_stopping
+from app.web.shutdown import unless_stopping
 
 router = APIRouter(prefix=f"{API}/experiments", tags=["experiments"])
 

@@ -17,7 +17,7 @@ from app.experiments.model import Experiment, Status
 from app.web.api.experiments import ExperimentId, record_of
 from app.web.api.records import API
 from app.web.deps import ServiceDep
-from app.web.files import FOREVER, FOREVER_FOR_ME, SUFFIXES, file_response, matches, not_modified
+from app.web.file_response import FOREVER, FOREVER_FOR_ME, SUFFIXES, file_response, matches, not_modified
 from app.web.openapi import problems
 
 router = APIRouter(prefix=f"{API}/experiments", tags=["experiments"])

@@ -17,7 +17,7 @@ from app.methods.effects import possible_output
 from app.methods.registry import METHODS
 from app.web.api.records import API
 from app.web.deps import ServiceDep
-from app.web.files import SUFFIXES
+from app.web.file_response import SUFFIXES
 from app.web.openapi import form_parameters, problems
 from app.web.uploads import Form, receive_form
 

@@ -11,8 +11,8 @@ from starlette.requests import Request
 from starlette.responses import Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
+from app.web.headers import API_PREFIX
 from app.web.problems import respond
-from app.web.security import API_PREFIX
 
 _READING = {"GET", "HEAD", "OPTIONS"}
 _QUOTED = 100  # characters of a header in a message

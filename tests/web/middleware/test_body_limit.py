@@ -4,7 +4,7 @@ import socket
 
 import pytest
 
-from app.web.limits import FORM_BYTES
+from app.web.middleware.body_limit import FORM_BYTES
 
 PROBLEM = "application/problem+json"
 HEAD = b'--b\r\nContent-Disposition: form-data; name="file"; filename="a.png"\r\n\r\n'

@@ -5,9 +5,6 @@ Any web page may *read* the API, without cookies: results are public, or have an
 
 from collections.abc import Iterator
 
-from starlette.datastructures import MutableHeaders
-from starlette.types import ASGIApp, Message, Receive, Scope, Send
-
 API_PREFIX = "/api/"
 
 CONTENT_SECURITY_POLICY = "; ".join(
@@ -42,25 +39,3 @@ def security_headers(path: str) -> Iterator[tuple[str, str]]:
         yield "Access-Control-Expose-Headers", _READABLE_HEADERS
     else:
         yield "Cross-Origin-Resource-Policy", "same-origin"
-
-
-class SecurityHeaders:
-    """Adds `security_headers`, and keeps answers out of shared caches unless their routes say otherwise."""
-
-    def __init__(self, app: ASGIApp) -> None:
-        self.app = app
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        if scope["type"] != "http":
-            await self.app(scope, receive, send)
-            return
-
-        async def send_with_headers(message: Message) -> None:
-            if message["type"] == "http.response.start":
-                headers = MutableHeaders(scope=message)
-                for name, value in security_headers(scope["path"]):
-                    headers.setdefault(name, value)
-                headers.setdefault("Cache-Control", "private, no-cache")
-            await send(message)
-
-        await self.app(scope, receive, send_with_headers)
