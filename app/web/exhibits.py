@@ -11,7 +11,7 @@ from app.images.crop import Rectangle
 from app.methods.explanations.model import Exhibit, Figure
 from app.methods.registry import method
 from app.web.clips import Clip, address, clip_of
-from app.web.drafts import form_url
+from app.web.form.draft import form_url
 from app.web.panes import parts
 from app.web.templating import label
 

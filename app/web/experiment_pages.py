@@ -22,9 +22,9 @@ from app.methods.params import MovingParams
 from app.methods.registry import METHODS, method
 from app.web.clips import address, moves
 from app.web.deps import ServiceDep, TokenDep, base_url, owner_of_press, pressed, remember_owner
-from app.web.drafts import form_url
-from app.web.forms import SHARED
-from app.web.inputs import most
+from app.web.form.draft import form_url
+from app.web.form.inputs import most
+from app.web.form.parameters import SHARED
 from app.web.panes import crop_panes, facts, gallery, input_titles, looping, steps, texture_pane, tiling
 from app.web.snippets import snippets
 from app.web.templating import label, render

@@ -5,9 +5,9 @@ from typing import Any
 from fastapi import APIRouter, Request
 from starlette.responses import JSONResponse, Response
 
+from app.web.api.openapi import problems
 from app.web.deps import ServiceDep
 from app.web.middleware.metrics import Metrics
-from app.web.openapi import problems
 from app.web.problems import problem
 
 router = APIRouter(tags=["service"])

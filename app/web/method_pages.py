@@ -15,8 +15,8 @@ from app.methods.fields import FormField, fields
 from app.methods.model import Method
 from app.methods.registry import METHODS, method
 from app.web.deps import ServiceDep, base_url
-from app.web.drafts import form_url
 from app.web.exhibits import Shown, figure_view, shown
+from app.web.form.draft import form_url
 from app.web.snippets import snippets
 from app.web.templating import render
 

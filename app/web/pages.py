@@ -27,10 +27,10 @@ from app.web.deps import (
     pressed,
     remember_owner,
 )
-from app.web.drafts import Draft, opened, refused, sent, typed
-from app.web.inputs import Choices, further, prefix
+from app.web.form.context import form_context
+from app.web.form.draft import Draft, opened, refused, sent, typed
+from app.web.form.inputs import Choices, further, prefix
 from app.web.problems import status_of
-from app.web.sample_form import form_context
 from app.web.structure_page import form_structure
 from app.web.templating import render
 from app.web.uploads import receive_form

@@ -9,7 +9,7 @@ from app.experiments.model import Experiment, Output
 from app.methods.model import Method
 from app.methods.registry import method
 from app.web.clips import Clip, address, clip_of, moves, shown
-from app.web.inputs import ORDINALS
+from app.web.form.inputs import ORDINALS
 from app.web.templating import label
 
 CUBES = ("crop-cube", "cube")

@@ -18,7 +18,7 @@ from app.numbers import whole
 from app.samples import bundled
 from app.settings import Settings
 from app.web.deps import ServiceDep, SettingsDep
-from app.web.inputs import crop_names, time_names
+from app.web.form.inputs import crop_names, time_names
 from app.web.templating import METER_END, meter_place, render
 
 SIDE = 56.0  # of a picture on the scale, whose width is 1000

@@ -12,7 +12,7 @@ from fastapi.routing import APIRoute
 from app.methods.fields import fields
 from app.methods.model import Method
 from app.methods.registry import METHODS
-from app.web.forms import SHARED, form_name
+from app.web.form.parameters import SHARED, form_name
 
 DIGITS = "9" * 5000
 # As JSON writes them; Python's reader takes NaN and Infinity, too, and as many digits as it can count.

@@ -15,9 +15,9 @@ from app.experiments.model import Experiment, ExperimentInput, Sample
 from app.experiments.submission import NewInput
 from app.images.crop import Frames, Rectangle
 from app.methods.registry import METHODS
-from app.web.drafts import form_url, opened, sent
-from app.web.inputs import Choices
-from app.web.sample_form import form_context
+from app.web.form.context import form_context
+from app.web.form.draft import form_url, opened, sent
+from app.web.form.inputs import Choices
 
 CROP = {"crop.x": "4", "crop.y": "6", "crop.width": "20", "crop.height": "16"}
 FORM = {**CROP, "size": "1", "seed": "3"}

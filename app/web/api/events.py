@@ -11,9 +11,9 @@ from starlette.exceptions import HTTPException
 
 from app.experiments.model import Snapshot, Status
 from app.web.api.experiments import ExperimentId
+from app.web.api.openapi import problems
 from app.web.api.records import API
 from app.web.deps import ServiceDep
-from app.web.openapi import problems
 from app.web.shutdown import unless_stopping
 
 router = APIRouter(prefix=f"{API}/experiments", tags=["experiments"])

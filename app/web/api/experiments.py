@@ -1,5 +1,6 @@
 """``/api/v1/experiments``: submit, read, list, change, cancel and delete."""
 
+import re
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Header, Path, Query, Request
@@ -15,13 +16,15 @@ from app.experiments.service import Service
 from app.experiments.submission import NewExperiment, explained
 from app.methods.registry import METHODS
 from app.web.api.bodies import IDENTIFIER, Body, InputBody, ListedBody, without_fraction
-from app.web.api.prefer import LONGEST, wait_seconds
-from app.web.api.records import API, ExperimentList, ExperimentRecord
+from app.web.api.openapi import EXAMPLE_METHOD, EXAMPLE_SAMPLE, OWNER, parameters_schema, problems
+from app.web.api.records import API, ExperimentList, ExperimentRecord, PlanRecord
 from app.web.deps import ServiceDep, TokenDep, base_url, remember_owner
-from app.web.openapi import EXAMPLE_METHOD, EXAMPLE_SAMPLE, OWNER, parameters_schema, problems
 from app.web.shutdown import unless_stopping
 
-router = APIRouter(prefix=f"{API}/experiments", tags=["experiments"])
+LONGEST = 60  # seconds that `Prefer: wait=` waits
+_WAIT = re.compile(r'(?:^|,)\s*wait\s*=\s*"?(\d{1,9})"?\s*(?=[,;]|$)', re.IGNORECASE)
+
+router = APIRouter(prefix=API, tags=["experiments"])
 
 ExperimentId = Annotated[str, Path(pattern=IDENTIFIER, description="Id of an experiment.")]
 
@@ -112,7 +115,15 @@ _CREATED = {
 
 
 @router.post(
-    "",
+    "/check", dependencies=[Depends(require_json)], summary="Check before running", responses=problems(404, 422)
+)
+async def check_experiment(body: ExperimentBody, service: ServiceDep) -> PlanRecord:
+    """Say what it would make and how much memory it would take, or what is wrong with it; nothing is run."""
+    return PlanRecord(**vars(await run_in_threadpool(lambda: service.check(body.requested()))))
+
+
+@router.post(
+    "/experiments",
     status_code=202,
     response_model_exclude_unset=True,
     dependencies=[Depends(require_json)],
@@ -161,7 +172,7 @@ async def submit_experiment(
 
 
 @router.get(
-    "",
+    "/experiments",
     summary="The archive",
     response_model_exclude_unset=True,
     responses={
@@ -198,7 +209,7 @@ def list_experiments(
 
 
 @router.get(
-    "/{experiment_id}",
+    "/experiments/{experiment_id}",
     summary="The record of an experiment",
     response_model_exclude_unset=True,
     responses=problems(404, 410),
@@ -209,7 +220,7 @@ def read_experiment(experiment_id: ExperimentId, request: Request, service: Serv
 
 
 @router.patch(
-    "/{experiment_id}",
+    "/experiments/{experiment_id}",
     summary="List or unlist an experiment",
     response_model_exclude_unset=True,
     dependencies=[Depends(require_json)],
@@ -225,7 +236,7 @@ def change_experiment(
 
 
 @router.delete(
-    "/{experiment_id}",
+    "/experiments/{experiment_id}",
     status_code=204,
     summary="Cancel or delete an experiment",
     responses={
@@ -246,3 +257,15 @@ def delete_experiment(experiment_id: ExperimentId, request: Request, service: Se
     except DeletedError:
         return Response(status_code=204)
     return Response(record.model_dump_json(exclude_unset=True), 202, media_type="application/json")
+
+
+def wait_seconds(prefer: str | None) -> int | None:
+    """Read the seconds a client wants to wait, at most `LONGEST`; None if it says nothing about it.
+
+    Examples
+    --------
+    >>> wait_seconds("respond-async, wait=30"), wait_seconds("wait=3600"), wait_seconds("return=minimal")
+    (30, 60, None)
+    """
+    found = _WAIT.search(prefer or "")
+    return min(int(found[1]), LONGEST) if found else None

@@ -3,8 +3,8 @@
 from fastapi import APIRouter
 
 from app.methods.registry import METHODS, method
+from app.web.api.openapi import MethodName, problems
 from app.web.api.records import API, MethodList, MethodRecord
-from app.web.openapi import MethodName, problems
 
 router = APIRouter(prefix=f"{API}/methods", tags=["methods"])
 

@@ -15,10 +15,10 @@ from starlette.responses import FileResponse, Response, StreamingResponse
 from app.errors import ConflictError
 from app.experiments.model import Experiment, Status
 from app.web.api.experiments import ExperimentId, record_of
+from app.web.api.openapi import problems
 from app.web.api.records import API
 from app.web.deps import ServiceDep
 from app.web.file_response import FOREVER, FOREVER_FOR_ME, SUFFIXES, file_response, matches, not_modified
-from app.web.openapi import problems
 
 router = APIRouter(prefix=f"{API}/experiments", tags=["experiments"])
 

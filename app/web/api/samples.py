@@ -10,10 +10,10 @@ from app.errors import InvalidInputError
 from app.experiments.pictures import FilmFormat
 from app.numbers import FAR
 from app.web.api.bodies import IDENTIFIER
+from app.web.api.openapi import EXAMPLE_SAMPLE, OWNER, problems
 from app.web.api.records import API, SampleList, SampleRecord
 from app.web.deps import ServiceDep, TokenDep, base_url, in_upload_thread
 from app.web.file_response import FOREVER, SUFFIXES, file_response
-from app.web.openapi import EXAMPLE_SAMPLE, OWNER, problems
 from app.web.uploads import receive_form
 
 router = APIRouter(prefix=f"{API}/samples", tags=["samples"])

@@ -11,10 +11,10 @@ from app.images.crop import Rectangle
 from app.numbers import FAR
 from app.synthesis.structure import SIGMA
 from app.web.api.bodies import Crop
+from app.web.api.openapi import problems
 from app.web.api.records import API
 from app.web.api.samples import SampleId
 from app.web.deps import ServiceDep, in_upload_thread
-from app.web.openapi import problems
 
 LARGEST_SIGMA = 64
 

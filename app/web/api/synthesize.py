@@ -15,10 +15,10 @@ from app.images.crop import Frames, Rectangle
 from app.methods.announced import Announced
 from app.methods.effects import possible_output
 from app.methods.registry import METHODS
+from app.web.api.openapi import form_parameters, problems
 from app.web.api.records import API
 from app.web.deps import ServiceDep
 from app.web.file_response import SUFFIXES
-from app.web.openapi import form_parameters, problems
 from app.web.uploads import Form, receive_form
 
 router = APIRouter(prefix=API, tags=["experiments"])

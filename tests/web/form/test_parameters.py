@@ -10,7 +10,7 @@ from app.methods.fields import fields, requirement
 from app.methods.model import Method
 from app.methods.params import LoopParams, StillParams
 from app.methods.registry import METHODS
-from app.web.forms import SHARED, form_name, own_fields, parse, shared
+from app.web.form.parameters import SHARED, form_name, own_fields, parse, shared
 
 
 class Params(StillParams):

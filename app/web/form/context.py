@@ -13,9 +13,9 @@ from app.methods.model import Method, first_size
 from app.methods.params import StillParams
 from app.methods.registry import METHODS
 from app.samples import BundledSample
-from app.web.drafts import SIZES, Draft
-from app.web.forms import MOVING, SHARED, form_name, own_fields, shared
-from app.web.inputs import ORDINALS, SIDES, Choices, further, most, optional, prefix
+from app.web.form.draft import SIZES, Draft
+from app.web.form.inputs import ORDINALS, SIDES, Choices, further, most, optional, prefix
+from app.web.form.parameters import MOVING, SHARED, form_name, own_fields, shared
 
 
 @dataclass(frozen=True)

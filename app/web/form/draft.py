@@ -10,8 +10,8 @@ from app.experiments.submission import NewExperiment, NewInput
 from app.methods.fields import fields
 from app.methods.model import Method, Size
 from app.methods.registry import METHODS, method
-from app.web.forms import SHARED, form_name, parse, shared
-from app.web.inputs import Choices, input_query, opened_inputs, prefix, read_inputs, typed_query
+from app.web.form.inputs import Choices, input_query, opened_inputs, prefix, read_inputs, typed_query
+from app.web.form.parameters import SHARED, form_name, parse, shared
 
 SIZES = {
     "1": "the crop’s",
