@@ -18,7 +18,7 @@ from app.samples import require_files
 from app.settings import ROOT, Settings
 from app.store.blobs import FileBlobs
 from app.store.sql import SqlStore
-from app.web import catalogue_pages, health, method_pages, pages, problems, structure_page, uploads
+from app.web import health, problems, uploads
 from app.web.api import docs, events, experiments, methods, outputs, samples, structure, synthesize
 from app.web.api.openapi import document
 from app.web.middleware.body_limit import BodyLimit
@@ -26,6 +26,8 @@ from app.web.middleware.cross_origin import CrossOrigin
 from app.web.middleware.head_as_get import HeadAsGet
 from app.web.middleware.metrics import CountRequests, Metrics
 from app.web.middleware.security_headers import SecurityHeaders
+from app.web.pages.errors import render_error
+from app.web.pages.routes import router as pages
 from app.web.shutdown import on_stop_signal
 from app.worker import run_job
 
@@ -82,10 +84,11 @@ def create_app(settings: Settings | None = None, service: Service | None = None)
     app.state.settings, app.state.service, app.state.metrics = settings, service, metrics
     app.state.stopping = asyncio.Event()
     app.state.upload_threads = anyio.CapacityLimiter(UPLOADS_AT_ONCE)
-    problems.install(app, pages.render_error)
+    problems.install(app, render_error)
     api = (methods, samples, structure, experiments, events, outputs, synthesize)
-    for part in (*api, health, docs, pages, structure_page, method_pages, catalogue_pages):
+    for part in (*api, health, docs):
         app.include_router(part.router)
+    app.include_router(pages)
     app.mount("/static", StaticFiles(directory=ROOT / "static"), name="static")
     app.mount(docs.SWAGGER_URL, StaticFiles(directory=docs.SWAGGER_FILES), name="swagger")
     app.openapi = partial(document, app)  # type: ignore[method-assign]

@@ -7,7 +7,7 @@ import pytest
 
 from app.experiments.meter import Index, reading
 from app.images.crop import Rectangle
-from app.web.structure_page import SIDE, Measured, placed
+from app.web.pages.structure import SIDE, Measured, placed
 from app.web.templating import TEMPLATES, meter_place
 
 URL = "/api/v1/samples/gravel_gray/structure"

@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Form, Query, Request
 from fastapi.responses import RedirectResponse
 from starlette.responses import Response
+from starlette.status import HTTP_303_SEE_OTHER
 
 from app.experiments.catalogue import is_exhibit
 from app.experiments.model import Experiment, Sample, Status
@@ -24,12 +25,10 @@ from app.web.clips import address, moves
 from app.web.deps import ServiceDep, TokenDep, base_url, owner_of_press, pressed, remember_owner
 from app.web.form.draft import form_url
 from app.web.form.inputs import most
-from app.web.form.parameters import SHARED
+from app.web.pages.snippets import snippets
 from app.web.panes import crop_panes, facts, gallery, input_titles, looping, steps, texture_pane, tiling
-from app.web.snippets import snippets
 from app.web.templating import label, render
 
-SEE_OTHER = 303  # the answer to a form that was taken: go and look, and do not send it again on reload
 SEEDS = 1_000_000  # new seeds are below this: few enough digits to read them aloud
 
 View = Annotated[Literal["side", "flip", "slider", "tiled", "steps"], Query()]
@@ -38,7 +37,7 @@ Tiles = Annotated[int, Query(ge=2, le=3)]
 router = APIRouter(include_in_schema=False)
 
 
-def _page(experiment: Experiment) -> str:
+def experiment_address(experiment: Experiment) -> str:
     return f"/experiments/{experiment.id}"
 
 
@@ -53,8 +52,8 @@ def experiment_page(
 ) -> Response:
     experiment = service.get(experiment_id)
     base = base_url(request)
-    context = _common(service, experiment, token) | {
-        "title": f"{label(experiment.method)} of {_subject(service, experiment)}",
+    context = common_context(service, experiment, token) | {
+        "title": f"{label(experiment.method)} of {subject(service, experiment)}",
         "view": view,
         "tiles": tiles,
         "url": f"{base}/experiments/{experiment.id}",
@@ -72,23 +71,23 @@ def experiment_page(
             "padding": _padding(experiment),
             "timings": list(_timings(experiment)),
             "total": f"{sum(experiment.timings.values()):.2f} s",
-            "tiling": _tiling([experiment]),
+            "tiling": tiling_note([experiment]),
             "snippets": snippets(experiment, base),
         }
     return render(request, "experiment.html", context)
 
 
-def _common(service: Service, experiment: Experiment, token: str | None) -> dict[str, Any]:
+def common_context(service: Service, experiment: Experiment, token: str | None) -> dict[str, Any]:
     declared = method(experiment.method)
     return {
         "experiment": experiment,
         "snapshot": service.snapshot(experiment.id),
         "method": declared,
         "sources": _sources(service, experiment),
-        "subject": _subject(service, experiment),
+        "subject": subject(service, experiment),
         "owned": service.owns(experiment, token),
         "hidden": not experiment.listed and not is_exhibit(experiment),
-        "rows": list(_rows(experiment)),
+        "rows": list(parameter_rows(experiment)),
         "edit_url": form_url(experiment),
     }
 
@@ -126,13 +125,13 @@ def _sources(service: Service, experiment: Experiment) -> list[Source]:
     return [Source(title, sample, name, of.crop, of.frames) for title, sample, name, of in parts]
 
 
-def _subject(service: Service, experiment: Experiment) -> str:
+def subject(service: Service, experiment: Experiment) -> str:
     """What the textures are of, each sample once, as in "gravel and rippled sand"."""
     *others, last = dict.fromkeys(source.name[0].lower() + source.name[1:] for source in _sources(service, experiment))
     return f"{', '.join(others)} and {last}" if others else last
 
 
-def _rows(experiment: Experiment) -> Iterator[tuple[str, str]]:
+def parameter_rows(experiment: Experiment) -> Iterator[tuple[str, str]]:
     """Give every parameter with the label its form has, for people."""
     words = {True: "yes", False: "no"}
     for entry in fields(method(experiment.method).params):
@@ -190,7 +189,7 @@ def _shares_phase(other: Method, experiment: Experiment) -> bool:
     return other.name != declared.name and other.phase and declared.phase and fits
 
 
-def _tiling(experiments: Sequence[Experiment]) -> str:
+def tiling_note(experiments: Sequence[Experiment]) -> str:
     """Say whether their textures tile in space, and films loop in time."""
     declared = [method(experiment.method) for experiment in experiments]
     # Not validated: an old experiment's parameters may be none that a later version takes.
@@ -198,48 +197,6 @@ def _tiling(experiments: Sequence[Experiment]) -> str:
     seamless = [each.toroidal(chosen) for each, chosen in zip(declared, params, strict=True)]
     loops = [getattr(chosen, "loop", True) for chosen in params if isinstance(chosen, MovingParams)]
     return f"{tiling(seamless)} {looping(loops)}".rstrip()
-
-
-@router.get("/compare/{first_id}/{second_id}")
-def compare(
-    request: Request,
-    first_id: str,
-    second_id: str,
-    service: ServiceDep,
-    token: TokenDep,
-    view: View = "side",
-    tiles: Tiles = 2,
-) -> Response:
-    """Show two experiments beside the sample of the first; one that still runs shows its progress until it is there."""
-    both = [service.get(first_id), service.get(second_id)]
-    first, second = both
-    names = [label(experiment.method) for experiment in both]
-    samples = dict.fromkeys(_subject(service, experiment) for experiment in both)
-    same_inputs = first.inputs == second.inputs
-    context: dict[str, Any] = {
-        "title": f"{' and '.join(names)} of {' and '.join(samples)}",
-        "same_phase": same_inputs and _same_phase(first, second),
-        "base": f"/compare/{first.id}/{second.id}",
-        "view": "side" if view == "steps" else view,
-        "tiles": tiles,
-    }
-    unfinished = next((experiment for experiment in both if experiment.status is not Status.SUCCEEDED), None)
-    if unfinished is not None:
-        context |= _common(service, unfinished, token) | {"unfinished": True, "others": []}
-        return render(request, "compare.html", context)
-    panes = crop_panes(first)
-    if not same_inputs:
-        panes += crop_panes(second, other=True)
-    panes += [texture_pane(run, note=f"seed {run.parameters['seed']}", page=_page(run)) for run in both]
-    told = [dict(_rows(experiment)) for experiment in both]
-    rows = [(name, [values.get(name, "–") for values in told]) for name in told[0] | told[1]]
-    context |= {"panes": panes, "experiments": both, "rows": rows, "tiling": _tiling(both)}
-    return render(request, "compare.html", context)
-
-
-def _same_phase(first: Experiment, second: Experiment) -> bool:
-    driven = all(method(experiment.method).phase for experiment in (first, second))
-    return driven and all(first.parameters[name] == second.parameters[name] for name in SHARED)
 
 
 @router.post("/experiments/{experiment_id}/again")
@@ -264,7 +221,9 @@ def again(
     listed = experiment.listed or is_exhibit(experiment)
     run = service.submit(NewExperiment(name, inputs, parameters, listed), owner, key)
     other = name != experiment.method
-    response = RedirectResponse(f"/compare/{experiment.id}/{run.id}" if other else f"/experiments/{run.id}", SEE_OTHER)
+    response = RedirectResponse(
+        f"/compare/{experiment.id}/{run.id}" if other else f"/experiments/{run.id}", HTTP_303_SEE_OTHER
+    )
     remember_owner(request, response, owner)
     return response
 
@@ -274,13 +233,13 @@ def cancel(experiment_id: str, service: ServiceDep, token: TokenDep) -> Response
     """Cancel what waits or runs; one that finished in the meantime stays, for nobody asked to delete it."""
     if not service.get(experiment_id).status.finished:
         service.cancel_or_delete(experiment_id, token)
-    return RedirectResponse(f"/experiments/{experiment_id}", SEE_OTHER)
+    return RedirectResponse(f"/experiments/{experiment_id}", HTTP_303_SEE_OTHER)
 
 
 @router.post("/experiments/{experiment_id}/delete")
 def delete(experiment_id: str, service: ServiceDep, token: TokenDep) -> Response:
     service.cancel_or_delete(experiment_id, token)
-    return RedirectResponse("/archive", SEE_OTHER)
+    return RedirectResponse("/archive", HTTP_303_SEE_OTHER)
 
 
 @router.post("/experiments/{experiment_id}/{listing}")
@@ -288,4 +247,4 @@ def set_listed(
     experiment_id: str, listing: Literal["list", "unlist"], service: ServiceDep, token: TokenDep
 ) -> Response:
     service.set_listed(experiment_id, listing == "list", token)
-    return RedirectResponse(f"/experiments/{experiment_id}", SEE_OTHER)
+    return RedirectResponse(f"/experiments/{experiment_id}", HTTP_303_SEE_OTHER)

@@ -21,7 +21,7 @@ from app.methods.effects import without_effect
 from app.methods.fields import FormField, fields
 from app.methods.model import Method, Size
 from app.methods.registry import METHODS
-from app.web.snippets import snippets
+from app.web.pages.snippets import snippets
 from tests.methods.runs import SMALL
 
 BASE = "https://texture.example.org"

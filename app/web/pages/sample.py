@@ -1,4 +1,4 @@
-"""Home, sample, archive and error pages; they work without JavaScript, the modules in `static/js` make them better."""
+"""Page of a sample: its form is filled in, checked and submitted here."""
 
 from contextlib import suppress
 from dataclasses import asdict, replace
@@ -8,15 +8,14 @@ from fastapi import APIRouter, Request
 from fastapi.responses import RedirectResponse
 from starlette.concurrency import run_in_threadpool
 from starlette.responses import JSONResponse, Response
+from starlette.status import HTTP_303_SEE_OTHER
 
-from app.errors import AppError, InvalidInputError
+from app.errors import AppError
 from app.experiments.model import Sample
-from app.experiments.ownership import new_token
 from app.experiments.service import Service
-from app.methods.registry import METHODS, method
+from app.methods.registry import method
 from app.samples import bundled
 from app.settings import Settings
-from app.web import experiment_pages
 from app.web.deps import (
     ServiceDep,
     SettingsDep,
@@ -30,72 +29,13 @@ from app.web.deps import (
 from app.web.form.context import form_context
 from app.web.form.draft import Draft, opened, refused, sent, typed
 from app.web.form.inputs import Choices, further, prefix
+from app.web.pages.errors import WORDS
+from app.web.pages.structure import form_structure
 from app.web.problems import status_of
-from app.web.structure_page import form_structure
 from app.web.templating import render
 from app.web.uploads import receive_form
 
-NEWEST = 8
-PER_PAGE = 24
-TRAIL = 30  # pages of the archive that "Newer" finds its way back through
-
-WORDS = {
-    403: "This is not yours",
-    404: "There is nothing here",
-    405: "This address does not do that",
-    409: "It is too late for that",
-    410: "This was deleted",
-    413: "This is too large",
-    415: "This is neither a photograph nor a clip",
-    422: "This does not fit",
-    500: "Something went wrong on our side",
-    503: "All hands are busy",
-}
-NOTHING_CHOSEN = "Choose a photograph or a clip first: a PNG, JPEG, WebP, TIFF, MP4, WebM, GIF or APNG file."
-SEE_OTHER = 303  # the answer to a form that was taken: go and look, and do not send it again on reload
-
 router = APIRouter(include_in_schema=False)
-router.include_router(experiment_pages.router)
-
-
-def render_error(request: Request, status: int, title: str, detail: str) -> Response:
-    """Show what went wrong and where to go from here; ``title`` is the protocol's name for it."""
-    return render(
-        request, "error.html", {"status": status, "title": WORDS.get(status, title), "detail": detail}, status
-    )
-
-
-@router.get("/")
-def home(request: Request, service: ServiceDep, settings: SettingsDep) -> Response:
-    return _home(request, service, settings)
-
-
-def _home(
-    request: Request, service: Service, settings: Settings, error: str | None = None, status: int = 200
-) -> Response:
-    context = {
-        "limit": settings.max_upload_bytes,
-        "longest": {"seconds": settings.max_film_seconds, "frames": settings.max_film_frames},
-        "samples": service.bundled_samples(),
-        "newest": service.page(limit=NEWEST).experiments,
-        "upload_error": error,
-    }
-    return render(request, "home.html", context, status)
-
-
-@router.post("/samples")
-async def upload(request: Request, service: ServiceDep, settings: SettingsDep, token: TokenDep) -> Response:
-    owner = token or new_token()
-    try:
-        async with receive_form(request) as form:
-            if form.file is None:
-                raise InvalidInputError(NOTHING_CHOSEN, "file")
-            sample = await in_upload_thread(request, service.add_sample, form.file, owner)
-    except AppError as error:
-        return await run_in_threadpool(_home, request, service, settings, error.message, status_of(error))
-    response = RedirectResponse(f"/samples/{sample.id}", SEE_OTHER)
-    remember_owner(request, response, owner)
-    return response
 
 
 @router.get("/samples/{sample_id}")
@@ -181,7 +121,7 @@ def _submit(
         return _sample(request, settings, sample, choices, Draft(values, errors, frozenset(errors)), 422)
     if values.get("show"):
         query = urlencode(typed(values), safe=",:@")
-        return RedirectResponse(f"/samples/{sample.id}?{query}", SEE_OTHER)
+        return RedirectResponse(f"/samples/{sample.id}?{query}", HTTP_303_SEE_OTHER)
     read = sent(sample, choices, values, listed=not values.get("unlisted"))
     if read.request is None:
         return _sample(request, settings, sample, choices, read.draft, 422)
@@ -195,31 +135,6 @@ def _submit(
             service.check(read.request)
             draft = replace(draft, lasting=frozenset(draft.errors))
         return _sample(request, settings, sample, choices, draft, status_of(error))
-    response = RedirectResponse(f"/experiments/{experiment.id}", SEE_OTHER)
+    response = RedirectResponse(f"/experiments/{experiment.id}", HTTP_303_SEE_OTHER)
     remember_owner(request, response, owner)
     return response
-
-
-@router.get("/archive")
-def archive(
-    request: Request, service: ServiceDep, method: str | None = None, cursor: str | None = None, trail: str = ""
-) -> Response:
-    """List what is public; ``trail`` holds the cursors of the pages passed, for keyset paging only goes onwards."""
-    chosen = method if method in METHODS else None
-    page = service.page(limit=PER_PAGE, cursor=cursor, method=chosen)
-    passed = [part for part in trail.split(" ") if part]
-
-    def address(to: str | None, through: list[str]) -> str:
-        query = {"method": chosen, "cursor": to, "trail": " ".join(through[-TRAIL:])}
-        said = urlencode({name: value for name, value in query.items() if value})
-        return f"/archive?{said}" if said else "/archive"
-
-    context = {
-        "experiments": page.experiments,
-        "methods": METHODS.values(),
-        "chosen": chosen,
-        "paged": bool(cursor),
-        "older": address(page.cursor, [*passed, cursor] if cursor else []) if page.cursor else None,
-        "newer": address(passed[-1] if passed else None, passed[:-1]) if cursor else None,
-    }
-    return render(request, "archive.html", context)
