@@ -9,7 +9,7 @@ from app.experiments.service import Service
 from app.gallery.catalogue import FAILURES, SUCCESSES, Pair
 from app.gallery.literature import FIGURES
 from app.web.deps import ServiceDep
-from app.web.exhibits import figure_view, shown
+from app.web.pictures.exhibits import figure_view, shown
 from app.web.templating import render
 
 router = APIRouter(include_in_schema=False)

@@ -18,7 +18,7 @@ from app.web.pages.experiment import (
     subject,
     tiling_note,
 )
-from app.web.panes import crop_panes, texture_pane
+from app.web.pictures.panes import crop_panes, texture_pane
 from app.web.templating import label, render
 
 router = APIRouter(include_in_schema=False)

@@ -21,12 +21,12 @@ from app.methods.fields import fields
 from app.methods.model import Method
 from app.methods.params import MovingParams
 from app.methods.registry import METHODS, method
-from app.web.clips import address, moves
 from app.web.deps import ServiceDep, TokenDep, base_url, owner_of_press, pressed, remember_owner
 from app.web.form.draft import form_url
 from app.web.form.inputs import most
 from app.web.pages.snippets import snippets
-from app.web.panes import crop_panes, facts, gallery, input_titles, looping, steps, texture_pane, tiling
+from app.web.pictures.panes import crop_panes, facts, gallery, input_titles, looping, steps, texture_pane, tiling
+from app.web.pictures.videos import address, moves
 from app.web.templating import label, render
 
 SEEDS = 1_000_000  # new seeds are below this: few enough digits to read them aloud

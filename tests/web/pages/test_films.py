@@ -12,8 +12,8 @@ import pytest
 from PIL import Image
 
 from app.methods.explanations.model import Exhibit
-from app.web.clips import clip_of
-from app.web.exhibits import Shown, shown
+from app.web.pictures.exhibits import Shown, shown
+from app.web.pictures.videos import clip_of
 from app.web.templating import TEMPLATES
 
 TIME = {"first": 1, "count": 5}

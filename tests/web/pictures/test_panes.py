@@ -8,8 +8,8 @@ import pytest
 
 from app.experiments.model import Experiment, ExperimentInput, Output
 from app.images.crop import Rectangle
-from app.web.clips import Clip
-from app.web.panes import crop_panes, facts, gallery, input_titles, looping, steps, texture_pane, tiling
+from app.web.pictures.panes import crop_panes, facts, gallery, input_titles, looping, steps, texture_pane, tiling
+from app.web.pictures.videos import Clip
 
 
 def output(name: str, kind: Any = "view") -> Output:

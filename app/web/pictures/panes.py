@@ -8,8 +8,8 @@ from app.errors import NotFoundError
 from app.experiments.model import Experiment, Output
 from app.methods.model import Method
 from app.methods.registry import method
-from app.web.clips import Clip, address, clip_of, moves, shown
 from app.web.form.inputs import ORDINALS
+from app.web.pictures.videos import Clip, address, clip_of, moves, shown
 from app.web.templating import label
 
 CUBES = ("crop-cube", "cube")

@@ -10,9 +10,9 @@ from app.experiments.service import Service
 from app.images.crop import Rectangle
 from app.methods.explanations.model import Exhibit, Figure
 from app.methods.registry import method
-from app.web.clips import Clip, address, clip_of
 from app.web.form.draft import form_url
-from app.web.panes import parts
+from app.web.pictures.panes import parts
+from app.web.pictures.videos import Clip, address, clip_of
 from app.web.templating import label
 
 SAMPLE = "Sample"
