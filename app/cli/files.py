@@ -12,8 +12,8 @@ from typing import Any, Literal
 
 from app.errors import InvalidInputError, NotFoundError
 from app.experiments.environment import environment
+from app.experiments.files.outputs import AnyFormat, file_of
 from app.experiments.model import Experiment
-from app.experiments.outputs import AnyFormat, file_of
 from app.images.convert import convert
 from app.methods.announced import Announced
 from app.methods.effects import possible_output, refuse_deep

@@ -27,8 +27,8 @@ from app.cli.files import (
 from app.errors import InvalidInputError, NotFoundError
 from app.experiments.diagnostics import diagnose
 from app.experiments.model import Experiment, ExperimentInput, Sample
+from app.experiments.preparation import Allowed, Answer, NewExperiment, NewInput, prepare
 from app.experiments.run import METHOD_SHARE, only
-from app.experiments.submission import Allowed, Answer, NewExperiment, NewInput, prepare
 from app.images.crop import Frames, Rectangle
 from app.images.decode import Decoded, Limits, decode
 from app.methods.effects import outputs_of

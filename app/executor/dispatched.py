@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from distributed import Future
 from distributed.scheduler import KilledWorker
 
-from app.executor.words import BROKEN, LOST, out_of_time
+from app.executor.messages import BROKEN, LOST, out_of_time
 
 log = logging.getLogger(__name__)
 

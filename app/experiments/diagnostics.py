@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.experiments.meter import measured
-from app.images.crop import Rectangle
+from app.images.crop import Rectangle, measured
 from app.images.read import read_crop
 from app.images.video.reader import first_frame
 from app.methods.model import Picture, Progress, Source

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 
 from app.errors import DeletedError, NotFoundError
-from app.experiments.cache import FileCache
+from app.experiments.files.cache import FileCache
 from app.experiments.model import Experiment
 from app.experiments.ports import BlobStore, ExperimentStore
 from app.gallery.exhibits import exhibits

@@ -4,15 +4,14 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Literal
 
-from app.experiments.model import Sample
-from app.experiments.pictures import check_frame
+from app.experiments.model import Sample, check_frame
 from app.experiments.ports import BlobStore
-from app.images.crop import Rectangle
+from app.images.crop import Rectangle, measured
 from app.images.read import read_crop
 from app.images.strip import place
 from app.synthesis.arrays import Real
 from app.synthesis.luminance import luminance
-from app.synthesis.structure import CENTRE, LEAST, Structure, structure_index, too_small
+from app.synthesis.structure import LEAST, Structure, structure_index, too_small
 
 Verdict = Literal["micro-texture", "borderline", "structured", "unknown"]
 
@@ -106,15 +105,3 @@ class Meter:
     def _read(self, digest: str, area: Rectangle) -> Real:
         """Read a crop's luminance, which is all that is measured."""
         return luminance(read_crop(self._blobs.path(digest), area))
-
-
-def measured(area: Rectangle) -> Rectangle:
-    """The part of a rectangle that is measured: its centre, where it is larger than that.
-
-    Examples
-    --------
-    >>> measured(Rectangle(10, 10, 1124, 200))
-    Rectangle(x=60, y=10, width=1024, height=200)
-    """
-    width, height = min(area.width, CENTRE), min(area.height, CENTRE)
-    return Rectangle(area.x + (area.width - width) // 2, area.y + (area.height - height) // 2, width, height)

@@ -6,7 +6,10 @@ from datetime import datetime
 from enum import StrEnum
 from typing import Any, Literal
 
+from app.errors import InvalidInputError
 from app.images.crop import Frames, Rectangle
+
+DEEP = "@16:"  # in the name of a job, between a finished experiment and the output to compute at 16 bits
 
 
 class Status(StrEnum):
@@ -154,3 +157,26 @@ class Snapshot:
     fraction: float = 0.0
     stage: str | None = None
     elapsed: float = 0.0
+
+
+def deep_job(experiment_id: str, output: str) -> str:
+    """Name the job that computes an output of a finished experiment at 16 bits, and keeps it as `deep_name`."""
+    return f"{experiment_id}{DEEP}{output}"
+
+
+def deep_name(output: str) -> str:
+    """Name an output at 16 bits beside the one of 8; it is not listed.
+
+    Examples
+    --------
+    >>> deep_name("texture")
+    '.texture-16'
+    """
+    return f".{output}-16"
+
+
+def check_frame(sample: Sample, frame: int) -> None:
+    """Raise `InvalidInputError` if a sample has no frame of this number."""
+    if not 0 <= frame < sample.frames:
+        count = f"{sample.frames} frames" if sample.moving else "one frame"
+        raise InvalidInputError(f"The sample has {count}; the first is number 0.", "frame")

@@ -143,7 +143,7 @@ Run = Callable[[Settings, str, Progress], None]
 
 
 class Executor(Protocol):
-    """The engine that runs jobs: experiments, by their ids, and outputs at 16 bits, by `app.experiments.run.deep_job`.
+    """The engine that runs jobs: experiments, by their ids, and outputs at 16 bits (`app.experiments.model.deep_job`).
 
     It calls ``ended(job, failure)`` from a thread of its own once a job has left it: ``failure`` is None if the
     worker's function returned or the job was cancelled, otherwise a sentence for people. What a worker computes it

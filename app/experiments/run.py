@@ -13,7 +13,7 @@ import numpy as np
 from app.errors import AppError, CancelledError, DeletedError, NotFoundError
 from app.experiments.diagnostics import diagnose
 from app.experiments.environment import environment
-from app.experiments.model import Experiment, Output, Status
+from app.experiments.model import DEEP, Experiment, Output, Status, deep_name
 from app.experiments.ports import BlobStore, ExperimentStore
 from app.images.read import read_crop
 from app.images.strip import place, read_frames
@@ -24,7 +24,6 @@ log = logging.getLogger(__name__)
 
 MAX_ATTEMPTS = 6  # more often than any row of restarts would start one: it is the experiment that ends the service
 METHOD_SHARE = 0.92  # of the bar; the rest is for what is done around the method
-DEEP = "@16:"  # in the name of a job, between a finished experiment and the output to compute at 16 bits
 
 
 def run_job(store: ExperimentStore, blobs: BlobStore, job: str, progress: Progress, *, threads: int) -> None:
@@ -66,22 +65,6 @@ def run_job(store: ExperimentStore, blobs: BlobStore, job: str, progress: Progre
         return  # recorded before the worker was told
     except Exception as error:
         store.fail(experiment_id, _in_words(job, error))
-
-
-def deep_job(experiment_id: str, output: str) -> str:
-    """Name the job that computes an output of a finished experiment at 16 bits, and keeps it as `deep_name`."""
-    return f"{experiment_id}{DEEP}{output}"
-
-
-def deep_name(output: str) -> str:
-    """Name an output at 16 bits beside the one of 8; it is not listed.
-
-    Examples
-    --------
-    >>> deep_name("texture")
-    '.texture-16'
-    """
-    return f".{output}-16"
 
 
 def only(pictures: Iterable[Picture], wanted: str) -> Iterator[Picture]:

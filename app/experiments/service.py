@@ -8,21 +8,20 @@ from pathlib import Path
 from typing import Any, Literal
 
 from app.errors import ForbiddenError
-from app.experiments.acceptance import Acceptance, Plan
-from app.experiments.cache import FileCache
-from app.experiments.catalogue import Catalogue
-from app.experiments.direct import Direct
-from app.experiments.following import Following
+from app.experiments.exhibition import Catalogue
+from app.experiments.files.cache import FileCache
+from app.experiments.files.outputs import AnyFormat, Outputs
+from app.experiments.files.renditions import FilmFormat, Pictures
 from app.experiments.housekeeping import Housekeeping, Pruned
-from app.experiments.intake import SampleIntake
 from app.experiments.meter import Index, Meter
-from app.experiments.model import Experiment, Output, Page, Sample, Snapshot
-from app.experiments.outputs import AnyFormat, Outputs
-from app.experiments.ownership import same, token_digest
-from app.experiments.pictures import FilmFormat, Pictures
+from app.experiments.model import DEEP, Experiment, Output, Page, Sample, Snapshot, deep_job
 from app.experiments.ports import BlobStore, Executor, ExperimentStore
-from app.experiments.run import DEEP, deep_job
-from app.experiments.submission import NewExperiment
+from app.experiments.preparation import NewExperiment
+from app.experiments.samples import SampleIntake
+from app.experiments.submission import Acceptance, Plan
+from app.experiments.tokens import same, token_digest
+from app.experiments.transient import Direct
+from app.experiments.watching import Following
 from app.images.crop import Frames, Rectangle
 from app.settings import Settings
 from app.synthesis.structure import SIGMA

@@ -1,268 +1,91 @@
-"""From what a person asks for to a complete experiment, or to words that say what is wrong with it."""
+"""The desk at which experiments are handed in: what can run is accepted, everything else gets its reason at once."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from datetime import UTC, datetime
-from typing import Any, Literal
+from dataclasses import dataclass, replace
 
-from pydantic import ValidationError
-from pydantic_core import ErrorDetails
-
-from app.errors import InvalidInputError, TooLargeError
-from app.experiments.model import Experiment, ExperimentInput, Sample
-from app.experiments.ownership import new_identifier
-from app.images.crop import Frames, Rectangle
-from app.methods.effects import output_named, outputs_of, refuse_deep, without_effect
-from app.methods.fields import fields, reason, requirement
-from app.methods.model import Method, Size, Slot
-from app.methods.params import MovingParams, StillParams
-from app.methods.registry import method as method_named
-from app.numbers import said
-from app.settings import MEBIBYTE, Settings
-
-LEAST_FRAMES = 2
-WORKING_SHARE = 0.75  # of a worker's memory; the rest is the interpreter's, the libraries' and the encoders'
+from app.errors import BusyError, ConflictError, DeletedError, NotFoundError
+from app.experiments.model import Experiment
+from app.experiments.ports import Executor, ExperimentStore
+from app.experiments.preparation import Allowed, NewExperiment, memory_of, prepare
+from app.experiments.samples import SampleIntake
+from app.experiments.tokens import derived_identifier, new_identifier, new_token, token_digest
+from app.settings import Settings
 
 
 @dataclass(frozen=True)
-class NewInput:
-    """A crop of a sample; without a crop, all of it. For ``frames`` see `ExperimentInput`."""
+class Plan:
+    """What an experiment would make and take: pixels and frames of the texture, and bytes of memory of a worker.
 
-    sample: str
-    crop: Rectangle | None = None
-    frames: Frames | None = None
-
-
-@dataclass(frozen=True)
-class Allowed:
-    """What a texture may have and take: pixels (of a video, of one frame and of all) and a worker's bytes of memory."""
-
-    pixels: int
-    film_pixels: int
-    memory: int
-
-    @classmethod
-    def by(cls, settings: Settings) -> "Allowed":
-        """What the settings allow."""
-        memory = int(settings.worker_memory * WORKING_SHARE)
-        return cls(settings.max_output_pixels, settings.max_film_pixels, memory)
-
-
-@dataclass(frozen=True)
-class Answer:
-    """What is wanted of a run that is made for one answer: the name of an output, None for all, and its bits.
-
-    Without a ``depth`` pictures have that of the deepest sample. What was typed and changes nothing of the answer is
-    refused; of an experiment that is kept all is there, and its parameters may be those of another one.
+    ``memory`` is 0 for a method that needs little, whatever is asked for.
     """
 
-    output: str | None = "texture"
-    depth: Literal[8, 16] | None = None
+    width: int
+    height: int
+    frames: int
+    memory: int
+    memory_limit: int
 
 
-@dataclass(frozen=True)
-class NewExperiment:
-    """What a person asks for; ``parameters`` as they came, unchecked."""
-
-    method: str
-    inputs: tuple[NewInput, ...]
-    parameters: Mapping[str, Any]
-    listed: bool = True
-    answer: Answer | None = None
-
-
-def prepare(
-    request: NewExperiment,
-    owner: str,
-    *,
-    sample: Callable[[str], Sample],
-    transparent: Callable[[Sample, Rectangle, Frames], bool],
-    allowed: Allowed,
-) -> Experiment:
-    """A complete experiment: crops explicit, defaults and sizes filled in.
+class Acceptance:
+    """Accepts experiments.
 
     Parameters
     ----------
-    request : NewExperiment
-    owner : str
-        The digest of the owner's token.
-    sample : callable
-        Gives the sample of an id; raises `NotFoundError`.
-    transparent : callable
-        Whether a crop of some frames of a sample holds pixels that are not opaque.
-    allowed : Allowed
-
-    Raises
-    ------
-    InvalidInputError
-        With the field at fault, dotted as in the JSON body.
-    NotFoundError
-        If the method or a sample does not exist.
-    TooLargeError
-        If the texture would have too many pixels, or take more memory than there is.
+    store, executor, intake
+        Those of the service.
+    settings : Settings
     """
-    method = method_named(request.method)
-    _check_count(method, len(request.inputs))
-    inputs, sizes = [], []
-    depths = {8}
-    for index, wanted_input in enumerate(request.inputs):
-        found = sample(wanted_input.sample)
-        frames = _frames(wanted_input, found, method.slot(index), f"inputs.{index}")
-        crop = _crop(wanted_input, found, frames, f"inputs.{index}.crop", transparent)
-        inputs.append(ExperimentInput(found.id, crop, frames))
-        depths.add(found.depth)
-        sizes.append(Size(crop.width, crop.height, found.channels, frames.count))
-    params = _params(method, request.parameters)
-    width, height = method.size(sizes)
-    filled = {"width": params.width or width, "height": params.height or height}
-    if isinstance(params, MovingParams):
-        filled["frames"] = params.frames or max(size.frames for size in sizes)
-    params = params.model_copy(update=filled)
-    _check_pixels(method, params, allowed)
-    method.check(sizes, params)
-    if request.answer is not None:
-        _check_answer(method, sizes, params, request, max(depths))
-        depths.add(request.answer.depth or 8)
-    _check_memory(method, _memory(method, sizes, params), allowed)
-    return Experiment(
-        id=new_identifier(),
-        method=method.name,
-        inputs=tuple(inputs),
-        parameters=params.model_dump(mode="json"),
-        listed=request.listed,
-        owner=owner,
-        created_at=datetime.now(UTC),
-        depth=16 if 16 in depths else 8,
-        wanted=(request.answer and request.answer.output) or "texture",
-    )
 
+    def __init__(self, store: ExperimentStore, executor: Executor, intake: SampleIntake, settings: Settings) -> None:
+        self._store = store
+        self._executor = executor
+        self._intake = intake
+        self._allowed = Allowed.by(settings)
+        self._queue_limit = settings.queue_limit
 
-def memory_of(experiment: Experiment, sample: Callable[[str], Sample]) -> int:
-    """Bytes that a run of a complete experiment needs, as far as its method says so; else 0."""
-    method = method_named(experiment.method)
-    sizes = [
-        Size(item.crop.width, item.crop.height, sample(item.sample).channels, item.frames.count)
-        for item in experiment.inputs
-    ]
-    return _memory(method, sizes, method.params.model_validate(experiment.parameters))
-
-
-def _memory(method: Method, sizes: list[Size], params: StillParams) -> int:
-    return 0 if method.memory is None else method.memory(sizes, params)
-
-
-def _check_count(method: Method, given: int) -> None:
-    least, most = len(method.inputs), len(method.inputs) + method.more
-    if least <= given <= most:
-        return
-    wanted = str(least) if least == most else f"{least} to {most}"
-    names = ", ".join(slot.name for slot in method.inputs)
-    noun = "input" if most == 1 else "inputs"
-    raise InvalidInputError(f"The method {method.name} takes {wanted} {noun} ({names}), not {given}.", "inputs")
-
-
-def _check_pixels(method: Method, params: StillParams, limits: Allowed) -> None:
-    pixels = (params.width or 0) * (params.height or 0)
-    maker, allowed = "this service", limits.pixels
-    if isinstance(params, MovingParams) and pixels * (params.frames or 1) > limits.film_pixels:
-        raise TooLargeError(
-            f"A video of {params.frames} frames of {params.width} × {params.height} has "
-            f"{pixels * (params.frames or 1) / 1e6:.0f} megapixels; {maker} makes at most "
-            f"{limits.film_pixels / 1e6:.0f}: ask for fewer frames, or for a smaller width or height."
-        )
-    if method.most_pixels is not None and method.most_pixels < allowed:
-        maker, allowed = f"the method {method.name}", method.most_pixels
-    if pixels > allowed:
-        raise TooLargeError(
-            f"A texture of {params.width} × {params.height} has {pixels / 1e6:.0f} megapixels; {maker} makes at most "
-            f"{allowed / 1e6:.0f}: ask for a smaller width or height."
+    def check(self, request: NewExperiment) -> Plan:
+        """What this would make and take. Raises as `submit` does, but for `BusyError`; nothing is kept."""
+        experiment = self._prepared(request, "")
+        parameters = experiment.parameters
+        return Plan(
+            width=parameters["width"],
+            height=parameters["height"],
+            frames=parameters.get("frames") or 1,
+            memory=memory_of(experiment, self._store.sample),
+            memory_limit=self._allowed.memory,
         )
 
+    def submit(
+        self, request: NewExperiment, owner_token: str, *, transient: bool = False, press: str | None = None
+    ) -> Experiment:
+        """Accept an experiment: it is on disk and queued when this returns. The same press again gives it once more."""
+        owner = token_digest(owner_token)
+        identifier = new_identifier()
+        if press is not None:
+            # The identifier itself says what was pressed: no second process can take it for another experiment.
+            known = derived_identifier(press, owner, repr(request))
+            try:
+                return self._store.get(known)
+            except NotFoundError:
+                identifier = known
+            except DeletedError:
+                pass  # pressed anew since
+        if self._executor.waiting >= self._queue_limit:
+            raise BusyError("Too many experiments wait already. Try again in a minute.")
+        experiment = replace(self._prepared(request, owner), id=identifier, transient=transient)
+        try:
+            self._store.add(experiment)
+        except ConflictError:
+            if press is None:
+                raise
+            return self._store.get(identifier)  # the other one of two at once was faster
+        self._executor.submit(experiment.id)
+        return experiment
 
-def _check_answer(method: Method, sizes: list[Size], params: StillParams, request: NewExperiment, deepest: int) -> None:
-    assert request.answer is not None
-    wanted = [output.name for output in outputs_of(method, params, len(sizes))]
-    if request.answer.output is not None:
-        output = output_named(method, request.answer.output, params, len(sizes))
-        wanted = [output.name]
-        if request.answer.depth == 16:
-            refuse_deep(output, deepest)
-    for name, words in without_effect(method, sizes, params, request.parameters.keys(), wanted).items():
-        raise InvalidInputError(words, f"parameters.{name}")
+    def submit_transient(self, request: NewExperiment) -> Experiment:
+        """Accept an experiment that is made for one answer."""
+        return self.submit(request, new_token(), transient=True)
 
-
-def _check_memory(method: Method, needed: int, allowed: Allowed) -> None:
-    if needed > allowed.memory:
-        smaller = (
-            "a shorter or smaller crop, fewer frames, or a smaller width and height"
-            if method.moving
-            else ("a smaller crop, or a smaller width and height")
+    def _prepared(self, request: NewExperiment, owner: str) -> Experiment:
+        return prepare(
+            request, owner, sample=self._store.sample, transparent=self._intake.transparent, allowed=self._allowed
         )
-        raise TooLargeError(
-            f"This run would need about {needed / MEBIBYTE:,.0f} MB of memory, and a worker of this service has "
-            f"{allowed.memory / MEBIBYTE:,.0f} MB for it: take {smaller}."
-        )
-
-
-def _frames(wanted: NewInput, sample: Sample, slot: Slot, field: str) -> Frames:
-    if slot.moving and not sample.moving:
-        raise InvalidInputError(
-            f"The input “{slot.name}” of this method is a video, and this sample is a still picture: upload an MP4, "
-            "WebM, GIF, animated WebP or APNG file, or take one of the bundled clips.",
-            f"{field}.sample",
-        )
-    frames = wanted.frames or (Frames(0, sample.frames) if slot.moving else Frames())
-    try:
-        frames.within(sample.frames)
-    except InvalidInputError as error:
-        raise InvalidInputError(error.message, f"{field}.frames") from None
-    if slot.moving and frames.count < LEAST_FRAMES:
-        raise InvalidInputError(
-            f"A moving texture is made from at least {LEAST_FRAMES} frames: make the time range longer.",
-            f"{field}.frames",
-        )
-    if not slot.moving and frames.count > 1:
-        raise InvalidInputError(
-            f"The input “{slot.name}” of this method is a still picture: give a time range of 1 frame.",
-            f"{field}.frames",
-        )
-    return frames
-
-
-def _crop(
-    wanted: NewInput,
-    sample: Sample,
-    frames: Frames,
-    field: str,
-    transparent: Callable[[Sample, Rectangle, Frames], bool],
-) -> Rectangle:
-    crop = wanted.crop or Rectangle(0, 0, sample.width, sample.height)
-    try:
-        crop.within(sample.width, sample.height)
-    except InvalidInputError as error:
-        raise InvalidInputError(error.message, field) from None
-    if sample.transparent and transparent(sample, crop, frames):
-        raise InvalidInputError(
-            "The crop holds transparent pixels, which have no colour to synthesise from: move it to an opaque region.",
-            field,
-        )
-    return crop
-
-
-def _params(method: Method, given: Mapping[str, Any]) -> StillParams:
-    try:
-        return method.params.model_validate(dict(given))
-    except ValidationError as error:
-        raise explained(error.errors(include_url=False)[0], method) from None
-
-
-def explained(fault: ErrorDetails, method: Method) -> InvalidInputError:
-    """Say what is wrong with a parameter: its name, what it takes and what came."""
-    path = [str(part) for part in fault["loc"]]
-    field = ".".join(["parameters", *path])
-    if fault["type"] == "extra_forbidden":
-        known = ", ".join(method.params.model_fields)
-        return InvalidInputError(f"The method {method.name} has no parameter {said(path[-1])}; it has: {known}.", field)
-    entry = next((entry for entry in fields(method.params) if entry.name in path[:1]), None)
-    words = reason(fault["msg"]) if entry is None else requirement(entry, fault["msg"])
-    return InvalidInputError(f"{words.removesuffix('.')}; got {said(fault['input'])}.", field)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from app.errors import InvalidInputError
 from app.numbers import said, whole
+from app.synthesis.structure import CENTRE
 
 
 @dataclass(frozen=True)
@@ -120,3 +121,15 @@ class Frames:
 
     def __str__(self) -> str:
         return f"{self.first},{self.count}"
+
+
+def measured(area: Rectangle) -> Rectangle:
+    """The part of a rectangle that is measured: its centre, where it is larger than that.
+
+    Examples
+    --------
+    >>> measured(Rectangle(10, 10, 1124, 200))
+    Rectangle(x=60, y=10, width=1024, height=200)
+    """
+    width, height = min(area.width, CENTRE), min(area.height, CENTRE)
+    return Rectangle(area.x + (area.width - width) // 2, area.y + (area.height - height) // 2, width, height)

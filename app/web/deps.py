@@ -8,8 +8,8 @@ import anyio.to_thread
 from fastapi import Depends, Request
 from starlette.responses import Response
 
-from app.experiments.ownership import derived_token, new_token
 from app.experiments.service import Service
+from app.experiments.tokens import derived_token, new_token
 from app.settings import Settings
 
 OWNER_COOKIE = "microtexture_owner"

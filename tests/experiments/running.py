@@ -4,8 +4,8 @@ import asyncio
 from typing import Any
 
 from app.experiments.model import Experiment, Sample
+from app.experiments.preparation import NewExperiment, NewInput
 from app.experiments.service import Service
-from app.experiments.submission import NewExperiment, NewInput
 from app.images.crop import Rectangle
 
 OWNER = "the owner's token"

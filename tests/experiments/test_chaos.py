@@ -14,8 +14,8 @@ import psutil
 import pytest
 
 from app.experiments.model import Status
+from app.experiments.preparation import NewExperiment, NewInput
 from app.experiments.service import Service
-from app.experiments.submission import NewExperiment, NewInput
 from app.settings import Settings
 
 pytestmark = pytest.mark.chaos

@@ -14,8 +14,8 @@ import pytest
 
 from app.errors import AppError, DeletedError, InvalidInputError
 from app.experiments.model import Experiment, Sample
+from app.experiments.preparation import NewExperiment, NewInput
 from app.experiments.service import Service
-from app.experiments.submission import NewExperiment, NewInput
 from app.images.crop import Rectangle
 from app.images.png import encode_png
 from app.methods.model import Context, Picture

@@ -12,8 +12,8 @@ from PIL import Image
 
 from app.errors import InvalidInputError, TooLargeError
 from app.experiments.model import Experiment, Sample, Status
+from app.experiments.preparation import NewExperiment, NewInput
 from app.experiments.service import Service
-from app.experiments.submission import NewExperiment, NewInput
 from app.images.crop import Frames, Rectangle
 from app.images.video.reader import read_film
 from app.images.video.writers import write_film

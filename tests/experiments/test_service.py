@@ -15,8 +15,8 @@ from PIL import Image
 
 from app.errors import BrokenFileError, BusyError, DeletedError, ForbiddenError, InvalidInputError, NotFoundError
 from app.experiments.model import Sample, Snapshot, Status
+from app.experiments.preparation import NewExperiment, NewInput
 from app.experiments.service import Service
-from app.experiments.submission import NewExperiment, NewInput
 from app.images.crop import Rectangle
 from app.settings import Settings
 from tests.experiments.running import OWNER, SECONDS, a_request, finished

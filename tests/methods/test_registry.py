@@ -10,7 +10,7 @@ from latex2mathml.converter import convert
 from PIL import Image
 
 from app.errors import CancelledError, InvalidInputError
-from app.experiments.submission import Allowed, NewExperiment, NewInput, prepare
+from app.experiments.preparation import Allowed, NewExperiment, NewInput, prepare
 from app.images.crop import Rectangle
 from app.methods.fields import fields
 from app.methods.model import Method, Source

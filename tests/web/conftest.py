@@ -261,7 +261,7 @@ def gallery(tmp_path_factory: pytest.TempPathFactory) -> Iterator[httpx.Client]:
     made = {name: exhibit for name, exhibit in exhibits().items() if MADE_IN_GALLERY.issuperset(dict(exhibit.inputs))}
     with serving(create_app(settings, service)) as url:
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr("app.experiments.catalogue.exhibits", lambda: made)
+            patch.setattr("app.experiments.exhibition.exhibits", lambda: made)
             assert service.catalogue.fill(threading.Event()).made == len(made) > 3
         with httpx.Client(base_url=url, timeout=PATIENCE, headers={"Accept": "text/html"}) as client:
             yield client

@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StringConstraints
 
-from app.experiments.submission import NewInput
+from app.experiments.preparation import NewInput
 from app.images.crop import Frames, Rectangle
 from app.numbers import FAR
 

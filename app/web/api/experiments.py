@@ -11,9 +11,9 @@ from starlette.responses import Response
 
 from app.errors import DeletedError, InvalidInputError, NotFoundError
 from app.experiments.model import Experiment
-from app.experiments.ownership import new_token
+from app.experiments.preparation import NewExperiment, explained
 from app.experiments.service import Service
-from app.experiments.submission import NewExperiment, explained
+from app.experiments.tokens import new_token
 from app.methods.registry import METHODS
 from app.web.api.bodies import IDENTIFIER, Body, InputBody, ListedBody, without_fraction
 from app.web.api.openapi import EXAMPLE_METHOD, EXAMPLE_SAMPLE, OWNER, parameters_schema, problems

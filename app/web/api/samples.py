@@ -7,7 +7,7 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import FileResponse, Response
 
 from app.errors import InvalidInputError
-from app.experiments.pictures import FilmFormat
+from app.experiments.files.renditions import FilmFormat
 from app.numbers import FAR
 from app.web.api.bodies import IDENTIFIER
 from app.web.api.openapi import EXAMPLE_SAMPLE, OWNER, problems

@@ -10,7 +10,7 @@ from starlette.requests import ClientDisconnect
 from starlette.responses import Response
 
 from app.errors import InvalidInputError
-from app.experiments.outputs import AnyFormat
+from app.experiments.files.outputs import AnyFormat
 from app.images.crop import Frames, Rectangle
 from app.methods.announced import Announced
 from app.methods.effects import possible_output

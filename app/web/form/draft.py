@@ -6,7 +6,7 @@ from urllib.parse import urlencode
 
 from app.errors import AppError, InvalidInputError
 from app.experiments.model import Experiment, Sample
-from app.experiments.submission import NewExperiment, NewInput
+from app.experiments.preparation import NewExperiment, NewInput
 from app.methods.fields import fields
 from app.methods.model import Method, Size
 from app.methods.registry import METHODS, method

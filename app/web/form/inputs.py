@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from app.errors import InvalidInputError, NotFoundError
 from app.experiments.model import Experiment, Sample
-from app.experiments.submission import NewInput
+from app.experiments.preparation import NewInput
 from app.images.crop import Frames, Rectangle
 from app.methods.model import Method, Slot
 from app.methods.registry import METHODS

@@ -10,11 +10,11 @@ from fastapi.responses import RedirectResponse
 from starlette.responses import Response
 from starlette.status import HTTP_303_SEE_OTHER
 
-from app.experiments.catalogue import is_exhibit
+from app.experiments.exhibition import is_exhibit
+from app.experiments.files.outputs import MP4_SUFFIX
 from app.experiments.model import Experiment, Sample, Status
-from app.experiments.outputs import MP4_SUFFIX
+from app.experiments.preparation import NewExperiment, NewInput
 from app.experiments.service import Service
-from app.experiments.submission import NewExperiment, NewInput
 from app.images.crop import Frames, Rectangle
 from app.images.video.writers import repeated
 from app.methods.fields import fields

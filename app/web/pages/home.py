@@ -7,8 +7,8 @@ from starlette.responses import Response
 from starlette.status import HTTP_303_SEE_OTHER
 
 from app.errors import AppError, InvalidInputError
-from app.experiments.ownership import new_token
 from app.experiments.service import Service
+from app.experiments.tokens import new_token
 from app.settings import Settings
 from app.web.deps import (
     ServiceDep,

@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
+from app.experiments.files.outputs import MP4_SUFFIX
+from app.experiments.files.renditions import POSTERS
 from app.experiments.model import Experiment, Output
-from app.experiments.outputs import MP4_SUFFIX
-from app.experiments.pictures import POSTERS
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ import pytest
 
 from app.errors import NotFoundError
 from app.experiments.model import Experiment, ExperimentInput, Sample
-from app.experiments.submission import NewInput
+from app.experiments.preparation import NewInput
 from app.images.crop import Frames, Rectangle
 from app.methods.registry import METHODS
 from app.web.form.context import form_context

@@ -6,7 +6,7 @@ from threading import Barrier, Event
 
 import pytest
 
-from app.experiments.cache import FileCache
+from app.experiments.files.cache import FileCache
 
 PATIENCE = 20.0
 

@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Literal
 
 from app.errors import InvalidInputError, NotFoundError
-from app.experiments.cache import FileCache
-from app.experiments.model import Output, Sample
+from app.experiments.files.cache import FileCache
+from app.experiments.model import Output, Sample, check_frame
 from app.experiments.ports import BlobStore
 from app.images.convert import PREVIEW, THUMBNAIL, Format, convert, depth_of, flattened, pair, rendition, thumbnails
 from app.images.png import encode_png
@@ -144,13 +144,6 @@ def check_deep(file_format: Format | FilmFormat | None) -> None:
         raise InvalidInputError(
             f"{file_format.upper()} has 8 bits per channel only: ask for png or tiff, or for depth 8.", "depth"
         )
-
-
-def check_frame(sample: Sample, frame: int) -> None:
-    """Raise `InvalidInputError` if a sample has no frame of this number."""
-    if not 0 <= frame < sample.frames:
-        count = f"{sample.frames} frames" if sample.moving else "one frame"
-        raise InvalidInputError(f"The sample has {count}; the first is number 0.", "frame")
 
 
 def _thumbnail_size(name: str, crop: Output, texture: Output) -> tuple[int, int]:

@@ -5,11 +5,10 @@ from pathlib import Path
 from typing import Literal, Protocol
 
 from app.errors import AppError, BusyError, InvalidInputError, NotFoundError
-from app.experiments.following import Following
-from app.experiments.model import Experiment, Output
-from app.experiments.pictures import DERIVED, PNG, FilmFormat, Pictures, check_deep
+from app.experiments.files.renditions import DERIVED, PNG, FilmFormat, Pictures, check_deep
+from app.experiments.model import Experiment, Output, deep_job, deep_name
 from app.experiments.ports import BlobStore, Executor, ExperimentStore
-from app.experiments.run import deep_job, deep_name
+from app.experiments.watching import Following
 from app.images.convert import Format, depth_of
 from app.methods.effects import possible_output, refuse_deep
 from app.methods.registry import method as method_named

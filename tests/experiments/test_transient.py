@@ -10,8 +10,8 @@ import pytest
 
 from app.errors import InvalidInputError, UnsupportedFormatError
 from app.experiments.model import Experiment
+from app.experiments.preparation import NewExperiment, NewInput
 from app.experiments.service import Service
-from app.experiments.submission import NewExperiment, NewInput
 from app.images.crop import Rectangle
 
 Stored = Callable[[], set[str]]

@@ -8,7 +8,7 @@ import pytest
 
 from app.errors import InvalidInputError, TooLargeError
 from app.experiments.model import Experiment, Sample
-from app.experiments.submission import Allowed, NewExperiment, NewInput, memory_of, prepare
+from app.experiments.preparation import Allowed, NewExperiment, NewInput, memory_of, prepare
 from app.images.crop import Frames, Rectangle
 
 SAMPLES = {

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from app.errors import AppError
 from app.experiments.model import Sample
-from app.experiments.ownership import new_identifier
 from app.experiments.ports import BlobStore, ExperimentStore
+from app.experiments.tokens import new_identifier
 from app.images.crop import Frames, Rectangle
 from app.images.decode import Limits
 from app.images.intake import intake, server

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from app.experiments.following import Following
 from app.experiments.model import Snapshot, Status
+from app.experiments.watching import Following
 
 RUNNING = SimpleNamespace(snapshot=lambda job: Snapshot(Status.RUNNING))  # an executor whose job never ends
 

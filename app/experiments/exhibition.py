@@ -7,10 +7,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from app.errors import AppError, DeletedError, NotFoundError
-from app.experiments.intake import SampleIntake
 from app.experiments.model import Experiment, Status
 from app.experiments.ports import Executor, ExperimentStore
-from app.experiments.submission import Allowed, NewExperiment, NewInput, prepare
+from app.experiments.preparation import Allowed, NewExperiment, NewInput, prepare
+from app.experiments.samples import SampleIntake
 from app.gallery.exhibits import exhibits
 from app.gallery.identity import identifier
 from app.images.crop import Rectangle

@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import Any, Literal
 
 from app.errors import ConflictError, InvalidInputError
-from app.experiments.following import Following
+from app.experiments.files.outputs import AnyFormat, Outputs, file_of
+from app.experiments.files.renditions import PNG, check_deep
 from app.experiments.housekeeping import Housekeeping
-from app.experiments.intake import SampleIntake
 from app.experiments.model import Experiment, Sample, Status
-from app.experiments.outputs import AnyFormat, Outputs, file_of
-from app.experiments.pictures import PNG, check_deep
-from app.experiments.submission import Answer, NewExperiment, NewInput
+from app.experiments.preparation import Answer, NewExperiment, NewInput
+from app.experiments.samples import SampleIntake
+from app.experiments.watching import Following
 from app.images.crop import Frames, Rectangle
 from app.methods.effects import possible_output
 from app.methods.registry import method as method_named

@@ -12,10 +12,9 @@ from pathlib import Path
 import pytest
 
 from app.errors import DeletedError, ForbiddenError, NotFoundError
-from app.experiments import catalogue
 from app.experiments.model import Status
+from app.experiments.preparation import Allowed, NewExperiment, NewInput, prepare
 from app.experiments.service import Service
-from app.experiments.submission import Allowed, NewExperiment, NewInput, prepare
 from app.gallery.exhibits import exhibits
 from app.gallery.groups import groups
 from app.gallery.identity import identifier
@@ -57,12 +56,12 @@ def two(monkeypatch: pytest.MonkeyPatch) -> None:
     """Two exhibits are declared, and one more whose sample is not here."""
     away = Exhibit("rpn", (("gravel_gray", "0,0,64,64"),))
     declared = {identifier(exhibit): exhibit for exhibit in (WAVES, PLASTER, away)}
-    monkeypatch.setattr(catalogue, "exhibits", lambda: declared)
+    monkeypatch.setattr(exhibition, "exhibits", lambda: declared)
 
 
 @pytest.fixture
 def filled(service: Service, two: None) -> Service:
-    assert service.catalogue.fill(threading.Event()) == catalogue.Filled(made=2, without_sample=1)
+    assert service.catalogue.fill(threading.Event()) == exhibition.Filled(made=2, without_sample=1)
     return service
 
 
@@ -71,7 +70,7 @@ def test_every_exhibit_is_a_small_experiment_that_can_run(exhibit: Exhibit) -> N
     inputs = tuple(NewInput(sample, Rectangle.parse(crop)) for sample, crop in exhibit.inputs)
     experiment = prepare(
         NewExperiment(exhibit.method, inputs, exhibit.parameters),
-        catalogue.OWNER,
+        exhibition.OWNER,
         sample=sample_of,
         transparent=lambda sample, crop, frames: False,
         allowed=Allowed(MOST_PIXELS, MOST_FILM_PIXELS, 1 << 31),
@@ -101,13 +100,13 @@ def test_made_twice_it_gives_the_same_bytes(filled: Service) -> None:
     digests = [output.digest for output in filled.catalogue.find(WAVES).outputs]
     told = []
     again = filled.catalogue.fill(threading.Event(), again=True, told=lambda *args: told.append(args))
-    assert again == catalogue.Filled(made=2, without_sample=1)
+    assert again == exhibition.Filled(made=2, without_sample=1)
     assert [output.digest for output in filled.catalogue.find(WAVES).outputs] == digests
     assert told == [(1, 2, WAVES, None), (2, 2, PLASTER, None)]
 
 
 def test_what_is_made_is_not_made_again(filled: Service) -> None:
-    assert filled.catalogue.fill(threading.Event()) == catalogue.Filled(kept=2, without_sample=1)
+    assert filled.catalogue.fill(threading.Event()) == exhibition.Filled(kept=2, without_sample=1)
 
 
 def test_it_is_in_no_archive_and_survives_pruning(filled: Service, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -122,7 +121,7 @@ def test_it_is_in_no_archive_and_survives_pruning(filled: Service, monkeypatch: 
 
 def test_only_the_operator_may_delete_it_and_it_stays_deleted_until_made_again(filled: Service) -> None:
     with pytest.raises(ForbiddenError):
-        filled.cancel_or_delete(identifier(WAVES), catalogue.OWNER)
+        filled.cancel_or_delete(identifier(WAVES), exhibition.OWNER)
     filled.cancel_or_delete(identifier(WAVES), "the operator")
     assert filled.catalogue.find(WAVES) is None
     assert filled.catalogue.fill(threading.Event()).made == 0
