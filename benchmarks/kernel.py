@@ -14,7 +14,7 @@ import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
-from app.images.png import PngWriter
+from app.images.png_writer import PngWriter
 from app.methods.model import Context, Source
 from app.methods.registry import method
 from app.synthesis.fourier.field import Field, Noise

@@ -10,7 +10,7 @@ import pytest
 import tifffile
 from PIL import Image
 
-from app.images.png import encode_png
+from app.images.png_writer import encode_png
 from app.methods.registry import METHODS
 from tests.test_cli import CHINA, SAND, WATER, microtexture, pixels, synthesize
 

@@ -11,8 +11,8 @@ from app.experiments.ports import BlobStore, ExperimentStore
 from app.experiments.tokens import new_identifier
 from app.images.crop import Frames, Rectangle
 from app.images.decode import Limits
-from app.images.intake import intake, server
-from app.images.strip import frames_have_transparency
+from app.images.film_strip import frames_have_transparency
+from app.images.intake.client import intake, server
 from app.samples import bundled
 from app.settings import Settings
 
@@ -34,7 +34,7 @@ class SampleIntake:
         Raises
         ------
         UnsupportedFormatError, BrokenFileError, TooLargeError
-            As `app.images.intake` finds.
+            As `app.images.intake.client` finds.
         BusyError
             If too many others are being decoded.
         """

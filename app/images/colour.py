@@ -7,7 +7,7 @@ import imagecodecs
 import numpy as np
 from numpy.typing import NDArray
 
-from app.images.png import Pixels
+from app.images.png_writer import Pixels
 
 NO_OPTIMISATION = imagecodecs.CMS.FLAGS.NOOPTIMIZE  # exact, not by interpolation in a coarse grid
 D65 = (0.3127, 0.3290, 1.0)

@@ -11,8 +11,8 @@ import tifffile
 from PIL import Image
 
 from app.errors import InvalidInputError
-from app.images.formats.raw import with_channels
-from app.images.png import Pixels, encode_png
+from app.images.formats.still import with_channels
+from app.images.png_writer import Pixels, encode_png
 
 Format = Literal["png", "jpeg", "webp", "tiff"]
 DEPTH_AT = 24  # where a PNG file says its bits per channel

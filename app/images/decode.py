@@ -11,10 +11,10 @@ import numpy as np
 from app.errors import BrokenFileError, TooLargeError, UnsupportedFormatError
 from app.images.colour import to_srgb
 from app.images.formats import animation, film, jpeg, png, tiff, webp
-from app.images.formats.clip import Clip, ClipLimits, Frame, rate_of
 from app.images.formats.containers import container_of
-from app.images.formats.raw import Raw, is_opaque, upright, with_channels
-from app.images.png import SIGNATURE, Pixels
+from app.images.formats.moving import Clip, ClipLimits, Frame, rate_of
+from app.images.formats.still import Raw, is_opaque, upright, with_channels
+from app.images.png_writer import SIGNATURE, Pixels
 
 if TYPE_CHECKING:
     from app.settings import Settings
@@ -73,7 +73,7 @@ class Decoded:
     """A picture or a video, upright and in sRGB.
 
     ``pixels`` is (H, W, C) uint8 or uint16, C 1 (grey) or 3 (RGB); ``alpha`` is (H, W) of the same type, or None if
-    every pixel is opaque (`app.images.formats.raw.is_opaque`). Of a video both are its film strip: the ``frames``,
+    every pixel is opaque (`app.images.formats.still.is_opaque`). Of a video both are its film strip: the ``frames``,
     ``rate`` of them a second, one below the other, uint8. ``media_type`` is what a video was.
     """
 
@@ -117,7 +117,7 @@ def decode(path: Path, limits: Limits) -> Decoded:
 def read(path: Path, limits: Limits) -> Decoded | Clip:
     """Read an uploaded picture, or begin to read a video. The format is told by content, never by name.
 
-    Nothing here bounds time or memory: `app.images.intake` runs it in a process that does.
+    Nothing here bounds time or memory: `app.images.intake.client` runs it in a process that does.
 
     Raises
     ------

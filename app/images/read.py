@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from app.errors import InvalidInputError
 from app.images.crop import Rectangle
-from app.images.formats.raw import is_opaque, with_channels
-from app.images.png import (
+from app.images.formats.still import is_opaque, with_channels
+from app.images.png_writer import (
     COLOUR_TYPES,
     FIRST_DATA,
     HEADER,
@@ -34,7 +34,7 @@ def read_crop(path: Path, rectangle: Rectangle) -> NDArray[np.float32]:
     Parameters
     ----------
     path : Path
-        A PNG file; one by `app.images.png` is read in time proportional to the crop.
+        A PNG file; one by `app.images.png_writer` is read in time proportional to the crop.
     rectangle : Rectangle
 
     Returns

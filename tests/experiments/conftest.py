@@ -10,7 +10,7 @@ import pytest
 from app.executor.inline import InlineExecutor
 from app.experiments.model import Sample
 from app.experiments.service import Service
-from app.images.png import encode_png
+from app.images.png_writer import encode_png
 from app.settings import Settings
 from app.store.blobs import FileBlobs
 from app.store.sql import SqlStore

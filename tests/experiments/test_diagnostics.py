@@ -9,7 +9,7 @@ import pytest
 from app.experiments.diagnostics import diagnose
 from app.experiments.preparation import NewExperiment, NewInput
 from app.experiments.service import Service
-from app.images.png import encode_png
+from app.images.png_writer import encode_png
 from app.methods.model import Fact, Picture, Source
 from app.synthesis.structure import delta_of, structure_index
 

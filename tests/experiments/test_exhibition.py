@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from app.errors import DeletedError, ForbiddenError, NotFoundError
+from app.experiments import exhibition
 from app.experiments.model import Status
 from app.experiments.preparation import Allowed, NewExperiment, NewInput, prepare
 from app.experiments.service import Service

@@ -10,7 +10,7 @@ from app.experiments import meter
 from app.experiments.meter import Index, Meter, reading
 from app.experiments.model import Sample
 from app.images.crop import Rectangle
-from app.images.png import encode_png
+from app.images.png_writer import encode_png
 from app.synthesis.structure import CENTRE, structure_index
 
 

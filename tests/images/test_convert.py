@@ -18,7 +18,7 @@ from PIL import Image, ImageCms
 from app.errors import InvalidInputError
 from app.images.convert import Format, convert, pair, rendition, thumbnails
 from app.images.decode import Limits, decode
-from app.images.png import encode_png
+from app.images.png_writer import encode_png
 
 Noise = Callable[..., NDArray[Any]]
 SAMPLES = Path(__file__).parents[2] / "samples"

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageOps
 
 from app.images.decode import Decoded
-from app.images.keep import to_png
+from app.images.intake.store import to_png
 
 Read = Callable[..., Decoded]
 Noise = Callable[..., NDArray[Any]]

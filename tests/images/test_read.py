@@ -14,8 +14,8 @@ from PIL import Image
 from app.errors import InvalidInputError
 from app.images.crop import Rectangle
 from app.images.decode import Decoded
-from app.images.keep import to_png
-from app.images.png import PngWriter, encode_png
+from app.images.intake.store import to_png
+from app.images.png_writer import PngWriter, encode_png
 from app.images.read import has_transparency, read_crop
 
 Noise = Callable[..., NDArray[Any]]

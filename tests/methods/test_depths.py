@@ -11,7 +11,7 @@ import pytest
 import tifffile
 
 from app.images.convert import convert, depth_of
-from app.images.png import encode_png
+from app.images.png_writer import encode_png
 from app.methods.model import Source
 from app.methods.registry import METHODS
 from app.synthesis.sinks import Levels

@@ -16,9 +16,9 @@ from PIL import Image
 from app.errors import BrokenFileError, UnsupportedFormatError
 from app.images.colour import to_srgb
 from app.images.formats import png, webp
-from app.images.formats.clip import Clip, ClipLimits, Frame, check_clip
-from app.images.formats.raw import DAMAGED, check_size, is_opaque, orientation, upright
-from app.images.png import HEADER, SIGNATURE
+from app.images.formats.moving import Clip, ClipLimits, Frame, check_clip
+from app.images.formats.still import DAMAGED, check_size, is_opaque, orientation, upright
+from app.images.png_writer import HEADER, SIGNATURE
 
 MEDIA_TYPES = {"GIF": "image/gif", "PNG": "image/apng", "WEBP": "image/webp"}
 HASTE, USUAL = 10.0, 100.0  # milliseconds

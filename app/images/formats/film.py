@@ -24,9 +24,9 @@ from av.video.reformatter import ColorRange, Colorspace, ColorTrc, Interpolation
 from av.video.stream import VideoStream
 
 from app.errors import BrokenFileError, UnsupportedFormatError
-from app.images.formats.clip import USUAL_RATE, Clip, ClipLimits, Frame, check_clip, within
 from app.images.formats.containers import Container
-from app.images.formats.raw import check_size, is_opaque, upright
+from app.images.formats.moving import USUAL_RATE, Clip, ClipLimits, Frame, check_clip, within
+from app.images.formats.still import check_size, is_opaque, upright
 
 NAME = "video"
 DAMAGED = (

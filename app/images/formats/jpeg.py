@@ -6,8 +6,8 @@ import numpy as np
 from PIL import Image
 
 from app.errors import BrokenFileError, UnsupportedFormatError
-from app.images.formats.raw import DAMAGED, Raw, check_size, orientation
-from app.images.png import Pixels
+from app.images.formats.still import DAMAGED, Raw, check_size, orientation
+from app.images.png_writer import Pixels
 
 NAME = "JPEG"
 START_OF_FRAME = {*range(0xC0, 0xD0)} - {0xC4, 0xC8, 0xCC}

@@ -11,8 +11,8 @@ from isal import isal_zlib
 from PIL import Image
 
 from app.errors import BrokenFileError
-from app.images.formats.raw import DAMAGED, Raw, check_size, orientation, with_channels
-from app.images.png import HEADER, SIGNATURE, chunk
+from app.images.formats.still import DAMAGED, Raw, check_size, orientation, with_channels
+from app.images.png_writer import HEADER, SIGNATURE, chunk
 
 NAME = "PNG"
 SAMPLES_PER_PIXEL = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}

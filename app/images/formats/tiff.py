@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from tifffile import COMPRESSION, EXTRASAMPLE, PHOTOMETRIC, SAMPLEFORMAT, TiffPage
 
 from app.errors import BrokenFileError, UnsupportedFormatError
-from app.images.formats.raw import DAMAGED, Raw, check_size
-from app.images.png import Pixels
+from app.images.formats.still import DAMAGED, Raw, check_size
+from app.images.png_writer import Pixels
 
 NAME = "TIFF"
 CHANNELS: dict[int, int] = {

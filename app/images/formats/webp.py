@@ -6,7 +6,7 @@ import numpy as np
 from PIL import Image
 
 from app.errors import BrokenFileError
-from app.images.formats.raw import DAMAGED, Raw, check_size, orientation, with_channels
+from app.images.formats.still import DAMAGED, Raw, check_size, orientation, with_channels
 
 NAME = "WebP"
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from pydantic import Field, field_validator
 
 from app.errors import InvalidInputError
-from app.images.png import PngWriter, encode_png
+from app.images.png_writer import PngWriter, encode_png
 from app.methods.announced import Announced, Condition, from_inputs, shown_inputs, texture
 from app.methods.explanations.mix import EXPLANATION
 from app.methods.explanations.references import GAUSSIAN_MIXING, PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES

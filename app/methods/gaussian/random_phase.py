@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from pydantic import Field as Option
 
 from app.errors import InvalidInputError
-from app.images.png import PngWriter
+from app.images.png_writer import PngWriter
 from app.methods.announced import shown_inputs, texture, views
 from app.methods.gaussian.params import SpotParams
 from app.methods.inputs import refuse_infinite, refuse_other_size

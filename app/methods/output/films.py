@@ -9,7 +9,7 @@ from uuid import uuid4
 import numpy as np
 from numpy.typing import NDArray
 
-from app.images.png import encode_png
+from app.images.png_writer import encode_png
 from app.images.video.cube import VideoCube
 from app.images.video.encoding import Encoding
 from app.images.video.writers import FilmWriter, Frame, Kind, repeated

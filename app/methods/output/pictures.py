@@ -5,7 +5,7 @@ from typing import Literal
 
 import numpy as np
 
-from app.images.png import PngWriter
+from app.images.png_writer import PngWriter
 from app.methods.model import Context, Fact, Picture, Source
 from app.synthesis.arrays import Real
 from app.synthesis.fourier.spectral import LogModulus

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from app.images.png import PngWriter
+from app.images.png_writer import PngWriter
 from app.methods.announced import shown_inputs, texture, views
 from app.methods.explanations.patchwork import EXPLANATION
 from app.methods.explanations.references import PATCHWORK as REPORT

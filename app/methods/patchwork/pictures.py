@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from app.errors import InvalidInputError
-from app.images.png import encode_png
+from app.images.png_writer import encode_png
 from app.images.video.cube import VideoCube
 from app.methods.model import Context, Fact, Picture, Size, Source
 from app.methods.output.films import film_memory, texture_film

@@ -8,7 +8,7 @@ import pytest
 import tifffile
 from PIL import Image
 
-from app.images.png import encode_png
+from app.images.png_writer import encode_png
 from app.methods.registry import METHODS
 
 URL = "/api/v1/synthesize"

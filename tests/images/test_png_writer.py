@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from PIL import Image
 
-from app.images.png import PngWriter, adler32_combine, encode_png
+from app.images.png_writer import PngWriter, adler32_combine, encode_png
 
 Picture = NDArray[np.uint8] | NDArray[np.uint16]
 

@@ -1,4 +1,4 @@
-"""A process that decodes uploads in children that may be killed; `app.images.intake` starts it with ``python -m``.
+"""Decoding server: a process that decodes uploads in children that may be killed; the client starts it.
 
 It imports the decoders once and forks one child for each upload, so that a child costs milliseconds. A child is limited
 in memory and CPU time by the kernel, and killed when its time is over. No process outlives its parent: this one ends
@@ -30,7 +30,7 @@ from PIL import Image
 
 from app.errors import AppError
 from app.images.decode import Limits
-from app.images.keep import store
+from app.images.intake.store import store
 
 MESSAGE_BYTES = 1 << 16
 PR_SET_PDEATHSIG = 1

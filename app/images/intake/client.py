@@ -13,18 +13,18 @@ from threading import BoundedSemaphore, Lock
 from typing import Any
 
 from app.errors import AppError, BrokenFileError, BusyError, TooLargeError, UnsupportedFormatError
-from app.images import decode_server
 from app.images.decode import Limits
-from app.images.keep import Kept
+from app.images.intake import server as decoding_server
+from app.images.intake.store import Kept
 
 AT_ONCE = max(2, os.cpu_count() or 2)
 WAIT_SECONDS = 60.0
+PACKAGES = Path(__file__).resolve().parents[3]  # where the package `app` lies
 GRACE_SECONDS = 10.0  # the server kills its children itself; this much later it must be hung
 ENVIRONMENT = {
     "OPENBLAS_NUM_THREADS": "1",  # a process that forks has better only one thread
     "MALLOC_ARENA_MAX": "1",  # every thread of a decoder would reserve memory that counts as used
 }
-ROOT = Path(__file__).resolve().parents[2]
 ERRORS: dict[str, type[AppError]] = {
     error.__name__: error for error in (BrokenFileError, TooLargeError, UnsupportedFormatError)
 }
@@ -73,10 +73,10 @@ class DecodingServer:
             self._control, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
             with theirs:
                 self._process = subprocess.Popen(  # noqa: S603 - our own interpreter and module
-                    [sys.executable, "-m", decode_server.__name__],
+                    [sys.executable, "-m", decoding_server.__name__],
                     stdin=theirs.fileno(),
                     stdout=subprocess.DEVNULL,
-                    cwd=ROOT,
+                    cwd=PACKAGES,
                     env=os.environ | ENVIRONMENT,
                     start_new_session=True,
                 )
@@ -125,7 +125,7 @@ def intake(path: Path, directory: Path, limits: Limits) -> Intake:
         os.close(descriptor)
         stored = Path(name)
         try:
-            return Intake(path=stored, **_decoded(decode_server.request(path.resolve(), stored, limits), limits))
+            return Intake(path=stored, **_decoded(decoding_server.request(path.resolve(), stored, limits), limits))
         except BaseException:
             stored.unlink(missing_ok=True)
             raise

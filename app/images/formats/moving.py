@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from app.errors import TooLargeError
-from app.images.png import Pixels
+from app.images.png_writer import Pixels
 
 SLOWEST, FASTEST = 1.0, 120.0
 USUAL_RATE = 25.0

@@ -7,7 +7,7 @@ import numpy as np
 from PIL import Image
 
 from app.errors import BrokenFileError, TooLargeError
-from app.images.png import Pixels
+from app.images.png_writer import Pixels
 
 OPAQUE = 0.99
 EXIF_ORIENTATION = 0x0112

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.images.crop import Frames, Rectangle
-from app.images.png import Pixels
+from app.images.png_writer import Pixels
 from app.images.read import cut, has_transparency, read_opaque
 
 
@@ -30,7 +30,7 @@ def read_frames(path: Path, crop: Rectangle, frames: Frames, height: int) -> NDA
     Parameters
     ----------
     path : Path
-        The strip; `app.images.png` has written it.
+        The strip; `app.images.png_writer` has written it.
     crop : Rectangle
         Inside a frame.
     frames : Frames

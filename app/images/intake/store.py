@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from app.images.decode import STILL, Decoded, Limits, read
-from app.images.formats.clip import Clip, rate_of
-from app.images.png import Pixels, PngWriter
+from app.images.formats.moving import Clip, rate_of
+from app.images.png_writer import Pixels, PngWriter
 
 STRIP_ROWS, STRIP_PIXELS = 64, 1 << 16  # small strips: a crop is read by strips
 THREADS, WAITING = 2, 4
@@ -21,7 +21,8 @@ class Kept:
 
     It is a PNG file of ``depth`` (8 or 16) bits; ``channels`` counts colour channels, 1 or 3; if ``transparent``, an
     alpha channel follows them. A video has several ``frames``, ``rate`` of them a second, each of ``width`` ×
-    ``height`` pixels, in a film strip (`app.images.strip`); ``media_type`` is what it was, ``image/png`` for a still.
+    ``height`` pixels, in a film strip (`app.images.film_strip`); ``media_type`` is what it was, ``image/png`` for a
+    still.
     """
 
     width: int

@@ -20,12 +20,12 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from app.errors import AppError, BrokenFileError, BusyError, TooLargeError, UnsupportedFormatError
-from app.images import intake as module
 from app.images.decode import Limits, decode
-from app.images.intake import intake
+from app.images.intake import client as module
+from app.images.intake.client import intake
 
 Noise = Callable[..., NDArray[Any]]
-SAMPLES = Path(__file__).parents[2] / "samples"
+SAMPLES = Path(__file__).parents[3] / "samples"
 PATIENCE = 30.0
 
 
@@ -189,7 +189,7 @@ def test_nothing_outlives_a_killed_parent(slow: Path, directory: Path) -> None:
     program = f"""
 from pathlib import Path
 from app.images.decode import Limits
-from app.images.intake import intake
+from app.images.intake.client import intake
 intake(Path({str(slow)!r}), Path({str(directory)!r}), Limits(seconds=60))
 """
     parent = subprocess.Popen([sys.executable, "-c", program], start_new_session=True)
@@ -209,7 +209,7 @@ from pathlib import Path
 with open({str(tmp_path / "runs")!r}, "a") as runs:
     runs.write("run")
 from app.images.decode import Limits
-from app.images.intake import intake
+from app.images.intake.client import intake
 for _ in range(3):
     intake(Path({str(SAMPLES / "tiles02.png")!r}), Path({str(directory)!r}), Limits())
 """)
