@@ -7,8 +7,8 @@ from typing import Literal
 from app.experiments.model import Sample, check_frame
 from app.experiments.ports import BlobStore
 from app.images.crop import Rectangle, measured
-from app.images.film_strip import place
 from app.images.read import read_crop
+from app.images.stored_video import place
 from app.synthesis.arrays import Real
 from app.synthesis.luminance import luminance
 from app.synthesis.structure import LEAST, Structure, structure_index, too_small

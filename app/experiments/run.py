@@ -15,8 +15,8 @@ from app.experiments.diagnostics import diagnose
 from app.experiments.environment import environment
 from app.experiments.model import DEEP, Experiment, Output, Status, deep_name
 from app.experiments.ports import BlobStore, ExperimentStore
-from app.images.film_strip import place, read_frames
 from app.images.read import read_crop
+from app.images.stored_video import place, read_frames
 from app.methods.model import Context, Film, Picture, Progress, Source
 from app.methods.registry import method as method_named
 

@@ -11,8 +11,8 @@ from app.experiments.ports import BlobStore, ExperimentStore
 from app.experiments.tokens import new_identifier
 from app.images.crop import Frames, Rectangle
 from app.images.decode import Limits
-from app.images.film_strip import frames_have_transparency
 from app.images.intake.client import intake, server
+from app.images.stored_video import frames_have_transparency
 from app.samples import bundled
 from app.settings import Settings
 

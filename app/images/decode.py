@@ -73,7 +73,7 @@ class Decoded:
     """A picture or a video, upright and in sRGB.
 
     ``pixels`` is (H, W, C) uint8 or uint16, C 1 (grey) or 3 (RGB); ``alpha`` is (H, W) of the same type, or None if
-    every pixel is opaque (`app.images.formats.still.is_opaque`). Of a video both are its film strip: the ``frames``,
+    every pixel is opaque (`app.images.formats.still.is_opaque`). Of a video both are its frame stack: the ``frames``,
     ``rate`` of them a second, one below the other, uint8. ``media_type`` is what a video was.
     """
 

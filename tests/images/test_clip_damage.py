@@ -16,9 +16,9 @@ from hypothesis import strategies as st
 from app.errors import AppError, BrokenFileError, TooLargeError
 from app.images.crop import Frames, Rectangle
 from app.images.decode import Decoded, Limits, decode
-from app.images.film_strip import read_frames
 from app.images.intake import client as module
 from app.images.intake.client import intake
+from app.images.stored_video import read_frames
 from app.settings import ROOT
 from tests.images.clips import FULL, animation, lossless, moving, video
 

@@ -10,8 +10,8 @@ from app.experiments.files.cache import FileCache
 from app.experiments.model import Output, Sample, check_frame
 from app.experiments.ports import BlobStore
 from app.images.convert import PREVIEW, THUMBNAIL, Format, convert, depth_of, flattened, pair, rendition, thumbnails
-from app.images.film_strip import read_frame
 from app.images.png_writer import encode_png
+from app.images.stored_video import read_frame
 from app.images.video.reader import first_frame
 from app.images.video.writers import write_film
 

@@ -1,4 +1,4 @@
-"""Keeping an upload: its pixels, and nothing else of it, go into a PNG file; a video's frames as a film strip."""
+"""Keeping an upload: its pixels, and nothing else of it, go into a PNG file; a video's frames as a frame stack."""
 
 from collections import deque
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -21,7 +21,7 @@ class Kept:
 
     It is a PNG file of ``depth`` (8 or 16) bits; ``channels`` counts colour channels, 1 or 3; if ``transparent``, an
     alpha channel follows them. A video has several ``frames``, ``rate`` of them a second, each of ``width`` ×
-    ``height`` pixels, in a film strip (`app.images.film_strip`); ``media_type`` is what it was, ``image/png`` for a
+    ``height`` pixels, in a frame stack (`app.images.stored_video`); ``media_type`` is what it was, ``image/png`` for a
     still.
     """
 

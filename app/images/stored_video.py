@@ -1,4 +1,4 @@
-"""A video as it is stored: a film strip, its frames one below the other in one PNG file.
+"""Stored video: a frame stack, all frames one below the other in one PNG file.
 
 So a crop of any frame is a rectangle of one picture, and is read without decoding the others.
 """
@@ -14,7 +14,7 @@ from app.images.read import cut, has_transparency, read_opaque
 
 
 def place(crop: Rectangle, frame: int, height: int) -> Rectangle:
-    """Where a frame's crop lies in the strip of frames of this height.
+    """Where a frame's crop lies in the stack of frames of this height.
 
     Examples
     --------
@@ -30,7 +30,7 @@ def read_frames(path: Path, crop: Rectangle, frames: Frames, height: int) -> NDA
     Parameters
     ----------
     path : Path
-        The strip; `app.images.png_writer` has written it.
+        The frame stack; `app.images.png_writer` has written it.
     crop : Rectangle
         Inside a frame.
     frames : Frames
@@ -44,7 +44,7 @@ def read_frames(path: Path, crop: Rectangle, frames: Frames, height: int) -> NDA
     Raises
     ------
     InvalidInputError
-        If the crop reaches outside the strip or holds pixels that are not opaque.
+        If the crop reaches outside the stack or holds pixels that are not opaque.
     """
     first = read_opaque(path, place(crop, frames.first, height))
     film = np.empty((frames.count, *first.shape), np.uint8)
@@ -55,7 +55,7 @@ def read_frames(path: Path, crop: Rectangle, frames: Frames, height: int) -> NDA
 
 
 def read_frame(path: Path, frame: int, width: int, height: int) -> Pixels:
-    """Cut a whole frame out of a strip: (H, W, C), with its alpha as the last channel where the strip has one."""
+    """Cut a whole frame out of a stack: (H, W, C), with its alpha as the last channel where the stack has one."""
     colour, alpha = cut(path, place(Rectangle(0, 0, width, height), frame, height))
     return colour if alpha is None else np.dstack([colour, alpha])
 
