@@ -25,7 +25,11 @@ test: lint programs ## everything: lint, types, unit, doctest, API, acceptance a
 	$(WITH_BROWSER) $(BIN)/pytest -n 2 --dist loadfile -m 'not (acceptance or chaos or load)'
 	$(WITH_BROWSER) $(BIN)/pytest tests -m '(acceptance or chaos) and not load'
 
-lint: $(VENV)/.ready-dev node_modules/.ready ## ruff, mypy and eslint
+# S3 wants the nesting shown within the braces, S6 forbids `{%-`, and S7 a condition around a word or an attribute.
+lint-templates: $(VENV)/.ready-dev
+	$(BIN)/python -m j2lint templates --extensions html --rules_dir lint/templates --ignore S3 S6 S7
+
+lint: lint-templates $(VENV)/.ready-dev node_modules/.ready ## ruff, mypy, j2lint and eslint
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
