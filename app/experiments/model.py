@@ -36,8 +36,8 @@ class Sample:
     an alpha channel with pixels that are not opaque. ``title`` is set for bundled samples, whose ids are file stems.
 
     A video has more than one of ``frames``, ``rate`` of them a second, and ``media_type`` is what it was uploaded as;
-    its file is a frame stack (`app.images.stored_video`): one PNG of all frames, one below the other, each of ``width`` ×
-    ``height``.
+    its file is a frame stack (`app.images.stored_video`): one PNG of all frames, one below the other, each of
+    ``width`` × ``height``.
     """
 
     id: str
