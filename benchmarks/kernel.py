@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 from app.images.png_writer import PngWriter
 from app.methods.model import Context, Source
 from app.methods.registry import method
-from app.synthesis.fourier.field import Field, Noise
 from app.synthesis.fourier.periodic import periodic_component, periodic_spectrum
+from app.synthesis.gaussian.adsn import adsn_field
+from app.synthesis.gaussian.rpn import rpn_field
 from app.synthesis.parallel import Team
 from app.synthesis.sinks import Levels
 from benchmarks.timing import Ratio, alternate
@@ -48,7 +49,7 @@ def pair(planes: Real) -> None:
 def write(h: Real, side: int, rows: Callable[[int, NDArray[np.unsignedinteger]], None], rayleigh: bool) -> None:
     """RPN or ADSN of a sample as rows of bytes."""
     with Team(THREADS) as team:
-        field = Field(h, Noise(side, side, seed=1, rayleigh=rayleigh), team, lambda stage, part: None)
+        field = (adsn_field if rayleigh else rpn_field)(h, side, side, team=team, seed=1)
         field.randomise().emit(Levels(rows, 3, 0, 255, 255))
 
 

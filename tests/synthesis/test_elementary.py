@@ -9,7 +9,9 @@ import pytest
 
 from app.settings import ROOT
 from app.synthesis import elementary
-from app.synthesis.fourier.spectral import STATES, _rayleigh_table, phase_table
+from app.synthesis.fourier.spectral import STATES
+from app.synthesis.gaussian.adsn import _rayleigh_table
+from app.synthesis.gaussian.rpn import phase_table
 
 # In single precision these have other bits with AVX-512 than without; BLAS has others for each of its kernels.
 VARYING = {
@@ -25,7 +27,7 @@ ALLOWED = {
     ("colour_space.py", "@"): "in double precision, rounded to single",
     ("cut_texton.py", "linalg"): "in double precision, rounded to single",
     ("cut_texton.py", "@"): "in double precision, rounded to single",
-    ("patch_search.py", "matmul"): "sifts only: what its rounding leaves in doubt is measured again",
+    ("window_search.py", "matmul"): "sifts only: what its rounding leaves in doubt is measured again",
     ("periodic.py", "@"): "products of single precision are exact in double precision",
     ("structure.py", "arcsin"): "of a number that is shown, not of a texture",
 }

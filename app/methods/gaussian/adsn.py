@@ -8,6 +8,7 @@ from app.methods.gaussian.params import not_extended
 from app.methods.gaussian.random_phase import OUTPUTS, RandomPhaseParams, check, run, toroidal
 from app.methods.inputs import INPUTS
 from app.methods.model import Method
+from app.synthesis.gaussian.adsn import adsn_field
 
 ADSN = Method(
     name="adsn",
@@ -18,7 +19,7 @@ ADSN = Method(
     references=(RANDOM_PHASE_TEXTURES, IPOL_RPN, PERIODIC_PLUS_SMOOTH),
     explanation=EXPLANATION,
     check=check,
-    run=partial(run, rayleigh=True),
+    run=partial(run, model=adsn_field),
     outputs=OUTPUTS,
     toroidal=toroidal,
     phase=True,

@@ -18,7 +18,8 @@ from app.methods.output.pictures import crops, encode
 from app.methods.params import WHOLE_IN_MEMORY
 from app.synthesis.arrays import Real
 from app.synthesis.fourier.spot import Spot
-from app.synthesis.fourier.spot_noise import asymptotic, sample_spot
+from app.synthesis.fourier.spot_noise import sample_spot
+from app.synthesis.gaussian.adsn import adsn_of_spot
 from app.synthesis.gaussian.dsn import Counts, counts, dsn, excess_kurtosis, shape, standard_spot
 
 ORDERS = (10, 100, 1000, 10_000, 100_000)
@@ -95,7 +96,7 @@ def run(sources: Sequence[Source], params: DsnParams, context: Context) -> Itera
             values = made(order, context.between(end, end + step))
             yield picture(f"dsn-{order}", f"n = {order:,}".replace(",", "\N{NO-BREAK SPACE}"), values, order)
             end += step
-        values = asymptotic(spot, params.seed, context.threads, context.between(end, 0.8))
+        values = adsn_of_spot(spot, params.seed, context.threads, context.between(end, 0.8))
         yield picture("adsn", "The limit: asymptotic discrete spot noise", values, np.inf)
     context.progress("spot", 0.8)
     yield from crops(sources, context)

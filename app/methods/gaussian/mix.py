@@ -18,6 +18,7 @@ from app.methods.model import Context, Method, Picture, Size, Slot, Source
 from app.methods.output.pictures import crops
 from app.methods.params import WHOLE_IN_MEMORY
 from app.synthesis.fourier.field import Noise
+from app.synthesis.gaussian.adsn import white_noise
 from app.synthesis.gaussian.mixing import Mixture
 from app.synthesis.parallel import Team
 from app.synthesis.sinks import Levels
@@ -110,7 +111,7 @@ class _Run:
         self._shares = params.shares(len(sources))
         self._begin, self._end = 0.1, 0.3
         noise = Noise(
-            self._height, self._width, seed=params.seed, rayleigh=True, alpha=params.alpha, window=params.window
+            white_noise, self._height, self._width, seed=params.seed, alpha=params.alpha, window=params.window
         )
         self._mixture = Mixture(samples, self._shares, noise, team, self._progress)
 

@@ -5,7 +5,7 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field as Option
+from pydantic import Field
 
 from app.errors import InvalidInputError
 from app.images.png_writer import PngWriter
@@ -15,7 +15,7 @@ from app.methods.inputs import refuse_infinite, refuse_other_size
 from app.methods.model import Context, Picture, Size, Source
 from app.methods.output.pictures import log_modulus
 from app.methods.params import ADD_SMOOTH, ADVANCED
-from app.synthesis.fourier.field import Field, Noise
+from app.synthesis.fourier.field import NoiseField
 from app.synthesis.fourier.periodic import smooth_planes
 from app.synthesis.fourier.spot import centre, make_spot
 from app.synthesis.gaussian.modulus_phase import power
@@ -26,7 +26,7 @@ from app.synthesis.sinks import Extent, Levels
 class RandomPhaseParams(SpotParams):
     """Parameters of RPN and ADSN."""
 
-    phase: Literal["add", "replace"] = Option(
+    phase: Literal["add", "replace"] = Field(
         "add",
         title="Phase",
         description="'add' shifts the phases of all colours by the same random amount and keeps the colours right; "
@@ -34,14 +34,14 @@ class RandomPhaseParams(SpotParams):
         "come of it.",
         json_schema_extra=ADVANCED,
     )
-    range: Literal["clip", "stretch"] = Option(
+    range: Literal["clip", "stretch"] = Field(
         "clip",
         title="Values out of range",
         description="What becomes of values darker than black or brighter than white: 'clip' cuts them off; 'stretch' "
         "maps all values, the same way in every colour, so that the extreme ones just fit.",
         json_schema_extra=ADVANCED,
     )
-    periodic: bool = Option(
+    periodic: bool = Field(
         True,
         title="Periodic component",
         description="Take the jumps between opposite borders out of the crop first, as the articles do. Without this "
@@ -65,23 +65,17 @@ def check(sizes: Sequence[Size], params: RandomPhaseParams) -> None:
         refuse_other_size(size, width, height)
 
 
+Model = Callable[..., NoiseField]
+"""`rpn_field` or `adsn_field`."""
+
+
 class _Run:
     """One run: makes its pictures one by one."""
 
-    def __init__(self, source: Source, params: RandomPhaseParams, context: Context, team: Team, rayleigh: bool) -> None:
+    def __init__(self, source: Source, params: RandomPhaseParams, context: Context, team: Team, model: Model) -> None:
         self._source, self._params, self._context, self._team = source, params, context, team
         self._height, self._width = params.height or source.pixels.shape[0], params.width or source.pixels.shape[1]
-        self._noise = Noise(
-            self._height,
-            self._width,
-            seed=params.seed,
-            rayleigh=rayleigh,
-            phase=params.phase,
-            alpha=params.alpha,
-            window=params.window,
-            periodic=params.periodic,
-            add_smooth=params.add_smooth,
-        )
+        self._model = model
         self._peak = 2**context.depth - 1
 
     def pictures(self) -> Iterator[Picture]:
@@ -117,7 +111,7 @@ class _Run:
         yield log_modulus("output-spectrum", "Log-modulus of the texture", squares, self._width, self._context)
         self._context.progress("output-spectrum", 1.0)
 
-    def _texture(self, field: Field) -> Picture:
+    def _texture(self, field: NoiseField) -> Picture:
         low, high = 0.0, float(self._source.peak)
         if self._params.range == "stretch":
             extent = Extent(self._source.peak)
@@ -127,7 +121,7 @@ class _Run:
         field.emit(Levels(writer.write, len(field.mean), low, high, self._peak))
         return Picture("texture", "Texture", self._width, self._height, writer.finish(), "texture")
 
-    def _field(self, ends: dict[str, float], start: float = 0.0, said: str | None = None) -> Field:
+    def _field(self, ends: dict[str, float], start: float = 0.0, said: str | None = None) -> NoiseField:
         """The noise's field; each of its stages goes from the end of the one before to its own in ``ends``.
 
         ``said`` is what they are all called in the progress; by default each has its own name.
@@ -137,7 +131,20 @@ class _Run:
         def progress(stage: str, part: float) -> None:
             self._context.progress(said or stage, begins[stage] + part * (ends[stage] - begins[stage]))
 
-        return Field(self._source.pixels, self._noise, self._team, progress)
+        params = self._params
+        return self._model(
+            self._source.pixels,
+            self._height,
+            self._width,
+            team=self._team,
+            progress=progress,
+            seed=params.seed,
+            phase=params.phase,
+            alpha=params.alpha,
+            window=params.window,
+            periodic=params.periodic,
+            add_smooth=params.add_smooth,
+        )
 
     def _picture(self, name: str, title: str, values: NDArray[np.float32], end: float) -> Picture:
         height, width = values.shape[1:]
@@ -163,13 +170,13 @@ class _Run:
         return Picture(name, title, width, height, writer.finish())
 
 
-def run(sources: Sequence[Source], params: RandomPhaseParams, context: Context, *, rayleigh: bool) -> Iterator[Picture]:
+def run(sources: Sequence[Source], params: RandomPhaseParams, context: Context, *, model: Model) -> Iterator[Picture]:
     """The texture, then the steps that lead to it."""
     source = sources[0]
     check([source.size], params)
     refuse_infinite(sources)
     with Team(context.threads) as team:
-        yield from _Run(source, params, context, team, rayleigh).pictures()
+        yield from _Run(source, params, context, team, model).pictures()
 
 
 def toroidal(params: RandomPhaseParams) -> bool:

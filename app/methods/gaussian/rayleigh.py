@@ -13,11 +13,12 @@ from app.methods.model import Context, Fact, Method, Picture, Progress, Size, So
 from app.methods.output.pictures import crops, encode, log_modulus
 from app.methods.params import WHOLE_IN_MEMORY, StillParams
 from app.synthesis.arrays import Real
-from app.synthesis.fourier.field import Noise, synthesize
 from app.synthesis.fourier.periodic import periodic_component
 from app.synthesis.fourier.spot import centre
+from app.synthesis.gaussian.adsn import adsn
 from app.synthesis.gaussian.modulus_phase import power
 from app.synthesis.gaussian.rayleigh import rayleigh
+from app.synthesis.gaussian.rpn import rpn
 
 
 def check(sizes: Sequence[Size], params: StillParams) -> None:
@@ -49,10 +50,12 @@ def run(sources: Sequence[Source], params: StillParams, context: Context) -> Ite
     context.progress("pictures", 0.33)
     yield from crops(sources, context)
     yield encode("periodic", "Periodic component", p, peak, context)
-    for name, title, begin in (("rpn", "RPN of the crop", 0.35), ("adsn", "The same with Rayleigh noise: ADSN", 0.6)):
-        noise = Noise(height, width, seed=params.seed, rayleigh=name == "adsn")
+    for name, model, title, begin in (
+        ("rpn", rpn, "RPN of the crop", 0.35),
+        ("adsn", adsn, "The same with Rayleigh noise: ADSN", 0.6),
+    ):
         progress = _as_one_stage(name, context.between(begin, begin + 0.25))
-        texture = synthesize(h, noise, context.threads, progress)
+        texture = model(h, height, width, seed=params.seed, threads=context.threads, progress=progress)
         yield encode(name, title, texture, peak, context, kind="texture")
     for name, title, image, done in (
         ("input-spectrum", "Log-modulus of the periodic component", p, 0.9),
@@ -64,7 +67,7 @@ def run(sources: Sequence[Source], params: StillParams, context: Context) -> Ite
 
 
 def _as_one_stage(name: str, progress: Progress) -> Progress:
-    """The stages of `synthesize` as one."""
+    """The stages of `rpn` or `adsn` as one."""
     stages = ("spot", "random phase", "texture")
     return lambda stage, part: progress(name, (stages.index(stage) + part) / len(stages))
 

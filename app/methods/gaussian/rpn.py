@@ -8,6 +8,7 @@ from app.methods.gaussian.params import not_extended
 from app.methods.gaussian.random_phase import OUTPUTS, RandomPhaseParams, check, run, toroidal
 from app.methods.inputs import INPUTS
 from app.methods.model import Method
+from app.synthesis.gaussian.rpn import rpn_field
 
 RPN = Method(
     name="rpn",
@@ -18,7 +19,7 @@ RPN = Method(
     references=(IPOL_RPN, RANDOM_PHASE_TEXTURES, PERIODIC_PLUS_SMOOTH),
     explanation=EXPLANATION,
     check=check,
-    run=partial(run, rayleigh=False),
+    run=partial(run, model=rpn_field),
     outputs=OUTPUTS,
     toroidal=toroidal,
     phase=True,

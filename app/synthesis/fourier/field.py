@@ -1,4 +1,4 @@
-"""The engine of RPN and ADSN: from a sample to rows of a texture, by blocks that stay in the processor's cache.
+"""Noise field: from a sample to rows of its RPN or ADSN, by blocks that stay in the processor's cache.
 
 Three passes over blocks, each shared out over the threads of a `Team`:
 
@@ -11,48 +11,38 @@ Every block of columns has its own stream of random numbers, so the result does 
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, TypedDict
 
 import numpy as np
 import scipy.fft
 
 from app.synthesis.arrays import Complex, Progress, Real
 from app.synthesis.fourier.periodic import SmoothSpectrum, periodic_planes
-from app.synthesis.fourier.spectral import column_blocks, random_block
+from app.synthesis.fourier.spectral import Block, Draw, column_blocks, random_bits
 from app.synthesis.fourier.spot import Profile, centre, make_spot
 from app.synthesis.parallel import Team, row_blocks
 from app.synthesis.sinks import Sink, into
 
 
+class NoiseOptions(TypedDict, total=False):
+    """Keyword arguments that RPN and ADSN share; `app.synthesis.gaussian.rpn.rpn` describes them."""
+
+    seed: int
+    phase: Literal["add", "replace"]
+    alpha: float
+    window: Profile
+    periodic: bool
+    add_smooth: bool
+
+
 @dataclass(frozen=True)
 class Noise:
-    """What to make of a sample.
+    """Parameters of a noise: what is drawn, for a texture of what size, and the `NoiseOptions` with their defaults."""
 
-    Parameters
-    ----------
-    height, width : int
-        Size of the texture in pixels.
-    seed : int
-        Not negative.
-    rayleigh : bool
-        ADSN if true, RPN if false.
-    phase : {"add", "replace"}
-        Add the random phase to every channel's own, or replace them all by it (the article's "wrong RPN").
-    alpha : float
-        Width of the spot's transition, 0–0.5 of the sample.
-    window : {"bump", "gaussian"}
-        Its profile.
-    periodic : bool
-        Take the sample's periodic component; without, the sample itself, whose jumps between opposite borders become
-        streaks.
-    add_smooth : bool
-        Add the smooth component to the texture; same size and with ``periodic`` only.
-    """
-
+    draw: Draw
     height: int
     width: int
     seed: int = 0
-    rayleigh: bool = False
     phase: Literal["add", "replace"] = "add"
     alpha: float = 0.1
     window: Profile = "bump"
@@ -60,32 +50,42 @@ class Noise:
     add_smooth: bool = False
 
 
-class Field:
-    """A noise whose columns are done: `emit` gives its rows, any number of times.
+class NoiseField:
+    """A noise of a sample, prepared up to its last transform: `emit` hands on its rows, any number of times.
 
     Parameters
     ----------
-    h : ndarray of float32, shape (H, W, C)
+    h : ndarray of float32, shape (H, W) or (H, W, C)
         The sample; along an axis that is longer than the texture's, its centre is taken.
     noise : Noise
     team : Team
-    progress : callable ``(stage, part)``
-        Called in the calling thread between blocks with the part of the stage that is done; may raise.
+        The threads that work.
+    progress : callable ``(stage, part)``, optional
+        Called in the calling thread between blocks with the part of the stage that is done; what it raises stops the
+        work.
+
+    Attributes
+    ----------
+    mean : ndarray of float64, shape (C,)
+        Mean of every channel, in the sample's values.
 
     Raises
     ------
     ValueError
-        If the sample holds values that are not finite, or ``add_smooth`` is asked for at another size or without
+        If the sample holds values that are not finite, or ``add_smooth`` is true for another size or without
         ``periodic``.
     """
 
-    def __init__(self, h: Real, noise: Noise, team: Team, progress: Progress) -> None:
+    def __init__(self, h: Real, noise: Noise, team: Team, progress: Progress | None = None) -> None:
         if noise.add_smooth and not noise.periodic:
             raise ValueError("The smooth component can be added only where it was taken out before.")
         self.noise = noise
         self._team = team
-        self._progress = progress
-        progress("spot", 0)
+        self._progress = progress or (lambda stage, part: None)
+        self._progress("spot", 0)
+        self._grey = h.ndim == 2
+        if self._grey:
+            h = h[:, :, None]
         h = centre(h, noise.height, noise.width)
         height, width, channels = h.shape
         self._top = (noise.height - height) // 2
@@ -123,14 +123,24 @@ class Field:
         self._team.run(transform, row_blocks(high), lambda part: self._progress("spot", part))
         return spectrum
 
-    def random(self, block: tuple[int, int]) -> Complex:
-        """One block of columns of the random spectrum."""
-        return random_block(self.noise.height, self.noise.width, block, self.noise.seed, self.noise.rayleigh)
+    def random(self, block: Block) -> Complex:
+        """Draw one block of columns of the random spectrum."""
+        noise = self.noise
+        return noise.draw(noise.height, noise.width, block, random_bits(noise.seed, block))
 
-    def spectra(self, block: tuple[int, int], random: Complex) -> Iterator[Complex]:
-        """One block of columns of the noise's spectrum, channel by channel, without the mean.
+    def spectra(self, block: Block, random: Complex) -> Iterator[Complex]:
+        """One block of columns of the noise's spectrum, channel by channel, without the mean; not after `randomise`.
 
-        ``random`` is that block of the random spectrum. Not after `randomise`.
+        Parameters
+        ----------
+        block : tuple of int
+            One of `column_blocks`.
+        random : ndarray of complex64, shape (height, columns)
+            That block of the random spectrum.
+
+        Yields
+        ------
+        ndarray of complex64, shape (height, columns)
         """
         noise, (first, last) = self.noise, block
         smooths = self._smooth.block(first, last) if self._smooth else None
@@ -155,16 +165,16 @@ class Field:
             yield spectrum
 
     def room(self) -> Complex:
-        """Where columns that are done can go, (C, height, width // 2 + 1): the field's own array, if it is so large."""
+        """An array for columns that are done, (C, height, width // 2 + 1): the field's own, if it is large enough."""
         if self._spectrum.shape[1] == self.noise.height:
             return self._spectrum
         return np.empty((len(self.mean), self.noise.height, self.noise.width // 2 + 1), np.complex64)
 
-    def randomise(self) -> "Field":
-        """Do the columns; needed once before `emit`."""
+    def randomise(self) -> "NoiseField":
+        """Transform the columns with the random spectrum; once, before `emit`."""
         noise, done = self.noise, self.room()
 
-        def transform(block: tuple[int, int]) -> None:
+        def transform(block: Block) -> None:
             columns = slice(*block)
             for plane, spectrum in zip(done, self.spectra(block, self.random(block)), strict=True):
                 plane[:, columns] = scipy.fft.ifft(spectrum, axis=0, overwrite_x=True, workers=1)
@@ -174,7 +184,7 @@ class Field:
         return self
 
     def power(self) -> Real:
-        """Squared modulus of the noise's half spectrum, the mean over the channels, instead of `randomise`.
+        """Squared modulus of the noise's half spectrum, the mean over the channels; before `randomise`, not after.
 
         Returns
         -------
@@ -183,7 +193,7 @@ class Field:
         noise = self.noise
         power = np.zeros((noise.height, noise.width // 2 + 1), np.float32)
 
-        def measure(block: tuple[int, int]) -> None:
+        def measure(block: Block) -> None:
             columns = power[:, slice(*block)]
             for spectrum in self.spectra(block, self.random(block)):
                 columns += spectrum.real**2 + spectrum.imag**2
@@ -193,10 +203,15 @@ class Field:
         return power
 
     def emit(self, sink: Sink, stage: str = "texture") -> None:
-        """Hand every row block to ``sink(first row, planes)``, from the team's threads and in any order.
+        """Hand every block of rows to a sink, from the team's threads and in any order; after `randomise`.
 
-        The planes, one for each channel, are (rows, width) float32, the mean included; they are made as the sink
-        asks for them and belong to it.
+        Parameters
+        ----------
+        sink : callable ``(first row, planes)``
+            The planes, one for each channel, are (rows, width) float32, the mean included; each is computed when the
+            sink takes it, and belongs to the sink.
+        stage : str
+            What the progress calls this pass.
         """
 
         def transform(rows: tuple[int, int]) -> None:
@@ -204,30 +219,14 @@ class Field:
 
         self._team.run(transform, row_blocks(self.noise.height), lambda part: self._progress(stage, part))
 
+    def array(self) -> Real:
+        """The texture as one array, shape (height, width), or (height, width, C) if the sample has three axes."""
+        texture = np.empty((self.noise.height, self.noise.width, len(self.mean)), np.float32)
+        self.randomise().emit(into(texture))
+        return texture[:, :, 0] if self._grey else texture
+
     def _planes(self, begin: int, end: int) -> Iterator[Real]:
         for channel, mean in enumerate(self.mean.astype(np.float32)):
             plane: Real = scipy.fft.irfft(self._spectrum[channel, begin:end], n=self.noise.width, workers=1)
             plane += mean
             yield plane
-
-
-def synthesize(h: Real, noise: Noise, threads: int = 1, progress: Progress | None = None) -> Real:
-    """The noise of a sample as one array of floats.
-
-    Parameters
-    ----------
-    h : ndarray of float32, shape (H, W) or (H, W, C)
-    noise : Noise
-    threads : int
-    progress : callable ``(stage, part)``, optional
-
-    Returns
-    -------
-    ndarray of float32, shape (noise.height, noise.width) or (noise.height, noise.width, C)
-    """
-    if h.ndim == 2:
-        return synthesize(h[:, :, None], noise, threads, progress)[:, :, 0]
-    texture = np.empty((noise.height, noise.width, h.shape[2]), np.float32)
-    with Team(threads) as team:
-        Field(h, noise, team, progress or (lambda stage, part: None)).randomise().emit(into(texture))
-    return texture

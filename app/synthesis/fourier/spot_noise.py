@@ -18,7 +18,6 @@ import scipy.fft
 
 from app.synthesis.arrays import Complex, Progress, Real
 from app.synthesis.fourier.periodic import periodic_planes
-from app.synthesis.fourier.spectral import random_spectrum
 from app.synthesis.fourier.spot import Profile, Spot, centre, make_spot
 
 
@@ -99,11 +98,3 @@ def convolve(
     if progress:
         progress("texture", 1.0)
     return texture.transpose(1, 2, 0)
-
-
-def asymptotic(spot: Spot, seed: int, threads: int = 1, progress: Progress | None = None) -> Real:
-    """Asymptotic discrete spot noise of a spot, with the phase and modulus of `adsn` at this seed.
-
-    Parameters and result are those of `convolve`; the white noise is that of `random_spectrum`.
-    """
-    return convolve([spot], [random_spectrum(spot.height, spot.width, seed, rayleigh=True)], threads, progress)

@@ -5,17 +5,79 @@
 In the Fourier domain that is RPN times a Rayleigh noise R of E R² = 1: Ẑ(ξ) = ĥ(ξ) R(ξ) exp(iθ(ξ)), and with the
 same seed θ is the RPN's. The mean is kept: the coefficient at the origin is not randomised.
 
+`white_noise` draws R exp(iθ). `adsn` returns a texture as one array; `adsn_field` is the same for a texture that is
+handed on row by row, and is what the service runs.
+
 References
 ----------
 Galerne, Gousseau, Morel, "Random Phase Textures: Theory and Synthesis", IEEE TIP 2011: definition 1, theorem 2,
 section 4.
 """
 
-from typing import Literal
+from functools import cache
+from typing import Unpack
 
-from app.synthesis.arrays import Progress, Real
-from app.synthesis.fourier.field import Noise, synthesize
-from app.synthesis.fourier.spot import Profile
+import numpy as np
+from numpy.random import SFC64
+from scipy.special import erfcinv
+
+from app.synthesis.arrays import Complex, Progress, Real
+from app.synthesis.elementary import log, log1p
+from app.synthesis.fourier.field import Noise, NoiseField, NoiseOptions
+from app.synthesis.fourier.spectral import (
+    STATES,
+    Block,
+    half_spectrum,
+    random_words,
+    real_rows,
+    symmetric_columns,
+    symmetrise,
+)
+from app.synthesis.fourier.spot import Spot
+from app.synthesis.fourier.spot_noise import convolve
+from app.synthesis.gaussian.rpn import random_phase
+from app.synthesis.parallel import Team
+
+
+@cache
+def _rayleigh_table() -> Real:
+    """Rayleigh moduli: R² = −ln U, averaged over each of the 65536 intervals of U, so that E R² = 1 exactly."""
+    square = 1 - log(np.arange(1, STATES + 1) / STATES)
+    below = np.arange(1, STATES)
+    square[1:] -= below * log1p(1 / below)  # −ln u has a primitive, but its differences would hang on the last bits
+    table: Real = np.sqrt(square).astype(np.float32)
+    return table
+
+
+def white_noise(height: int, width: int, block: Block, source: SFC64) -> Complex:
+    """Draw ``R exp(iθ)`` of a Gaussian white noise on one block of columns of the half spectrum (section 4).
+
+    θ is that of `app.synthesis.gaussian.rpn.random_phase` from the same bits; R is independent of it, Rayleigh with
+    E R² = 1, and |N(0, 1)| where k = −k. It is the transform of a white noise of variance 1 / (H W), without its mean.
+
+    Parameters
+    ----------
+    height, width, block
+        Those of `random_phase`.
+    source : SFC64
+        Random bits, 32 for each coefficient.
+
+    Returns
+    -------
+    ndarray of complex64, shape (height, columns of the block)
+    """
+    noise = random_phase(height, width, block, source)
+    words = random_words(source, height, block)
+    modulus = np.take(_rayleigh_table(), words, mode="clip")
+    for column in symmetric_columns(width, block):
+        symmetrise(modulus[:, column])
+        for row in real_rows(height):
+            # |N| of a real normal N, where all other coefficients are complex normal
+            modulus[row, column] = np.sqrt(2) * erfcinv((float(words[row, column]) + 0.5) / STATES)
+    if block[0] == 0:
+        modulus[0, 0] = 1
+    noise *= modulus
+    return noise
 
 
 def adsn(
@@ -23,40 +85,21 @@ def adsn(
     height: int | None = None,
     width: int | None = None,
     *,
-    seed: int = 0,
-    phase: Literal["add", "replace"] = "add",
-    alpha: float = 0.1,
-    window: Profile = "bump",
-    periodic: bool = True,
-    add_smooth: bool = False,
     threads: int = 1,
     progress: Progress | None = None,
+    **options: Unpack[NoiseOptions],
 ) -> Real:
-    """ADSN of the periodic component of an image, of any size.
+    """Synthesize the ADSN of the periodic component of an image, of any size.
 
     Parameters
     ----------
     h : ndarray of float32, shape (H, W) or (H, W, C)
         The sample; any number of channels, any range, finite.
     height, width : int, optional
-        Size of the texture; default: the sample's. Along a longer axis the spot is extended (see
-        `app.synthesis.fourier.spot`), along a shorter one the sample's centre is taken.
-    seed : int
-        Not negative; the result depends on nothing else.
-    phase : {"add", "replace"}
-        "replace" gives every channel's modulus one common phase: the literature's "wrong RPN", which makes false
-        colours.
-    alpha, window
-        The spot's transition, see `app.synthesis.fourier.spot.window`.
-    periodic : bool
-        Without, the sample itself takes the place of its periodic component: the jumps between its opposite borders
-        make a cross of streaks.
-    add_smooth : bool
-        Add the smooth component back; for a texture of the sample's own size only, and with ``periodic``.
-    threads : int
-        The result does not depend on it.
-    progress : callable ``(stage, part)``, optional
-        Called between blocks; what it raises stops the work.
+        Size of the texture in pixels; default: the sample's.
+    threads, progress, **options
+        Those of `app.synthesis.gaussian.rpn.rpn`: ``seed``, ``phase``, ``alpha``, ``window``, ``periodic`` and
+        ``add_smooth``, with the same meaning and the same defaults.
 
     Returns
     -------
@@ -66,25 +109,51 @@ def adsn(
     Raises
     ------
     ValueError
-        If values are not finite, or ``add_smooth`` is asked for with another size or without ``periodic``.
+        If values are not finite, or ``add_smooth`` is true with another size or without ``periodic``.
 
     Examples
     --------
-    >>> import numpy as np
     >>> h = np.random.default_rng(0).random((16, 20, 3), np.float32)
     >>> z = adsn(h, 32, 50, seed=7)
     >>> z.shape, bool(np.allclose(z.mean((0, 1)), h.mean((0, 1))))
     ((32, 50, 3), True)
     """
-    noise = Noise(
-        height or h.shape[0],
-        width or h.shape[1],
-        seed=seed,
-        rayleigh=True,
-        phase=phase,
-        alpha=alpha,
-        window=window,
-        periodic=periodic,
-        add_smooth=add_smooth,
-    )
-    return synthesize(h, noise, threads, progress)
+    with Team(threads) as team:
+        return adsn_field(h, height, width, team=team, progress=progress, **options).array()
+
+
+def adsn_field(
+    h: Real,
+    height: int | None = None,
+    width: int | None = None,
+    *,
+    team: Team,
+    progress: Progress | None = None,
+    **options: Unpack[NoiseOptions],
+) -> NoiseField:
+    """Prepare the ADSN of an image, whose rows are then handed to a sink.
+
+    Parameters, result and errors are those of `app.synthesis.gaussian.rpn.rpn_field`.
+    """
+    return NoiseField(h, Noise(white_noise, height or h.shape[0], width or h.shape[1], **options), team, progress)
+
+
+def adsn_of_spot(spot: Spot, seed: int, threads: int = 1, progress: Progress | None = None) -> Real:
+    """Synthesize the ADSN of a spot that is given as it is, with the white noise of `adsn` at this seed.
+
+    Parameters
+    ----------
+    spot : Spot
+        Of the texture's size.
+    seed : int
+        Not negative.
+    threads : int
+        The result does not depend on it.
+    progress : callable ``(stage, part)``, optional
+        Called between channels; what it raises stops the work.
+
+    Returns
+    -------
+    ndarray of float32, shape (spot.height, spot.width, C)
+    """
+    return convolve([spot], [half_spectrum(white_noise, spot.height, spot.width, seed)], threads, progress)

@@ -32,9 +32,10 @@ import numpy as np
 import scipy.fft
 
 from app.synthesis.arrays import Complex, Progress, Real
-from app.synthesis.fourier.field import Field, Noise
+from app.synthesis.fourier.field import Noise, NoiseField
 from app.synthesis.fourier.spectral import column_blocks
 from app.synthesis.fourier.spot import Profile
+from app.synthesis.gaussian.adsn import white_noise
 from app.synthesis.parallel import Team, row_blocks
 from app.synthesis.sinks import Sink, into
 
@@ -71,7 +72,8 @@ class Mixture:
             raise ValueError("The samples differ in their number of channels.")
         self._noise, self._team, self._progress = noise, team, progress
         fields = [
-            Field(sample, noise, team, _share(progress, number, len(samples))) for number, sample in enumerate(samples)
+            NoiseField(sample, noise, team, _share(progress, number, len(samples)))
+            for number, sample in enumerate(samples)
         ]
         self._means = [field.mean for field in fields]
         self._columns = [field.room() for field in fields]
@@ -87,7 +89,7 @@ class Mixture:
         team.run(transform, column_blocks(noise.width), lambda part: progress("random phase", part))
 
     def emit(self, weights: Sequence[float], sink: Sink, stage: str = "texture") -> None:
-        """Hand the rows of Σ wᵢ Xᵢ to a sink, as `Field.emit` does; any number of times."""
+        """Hand the rows of Σ wᵢ Xᵢ to a sink, as `NoiseField.emit` does; any number of times."""
 
         def transform(rows: tuple[int, int]) -> None:
             sink(rows[0], self._planes(weights, *rows))
@@ -230,7 +232,7 @@ def mix(
     shares = np.asarray(weights or [1] * len(samples), float)
     shares /= shares.sum()
     texture = np.empty((height, width, samples[0].shape[2]), np.float32)
-    noise = Noise(height, width, seed=seed, rayleigh=True, alpha=alpha, window=window)
+    noise = Noise(white_noise, height, width, seed=seed, alpha=alpha, window=window)
     with Team(threads) as team:
         mixture = Mixture(samples, list(shares), noise, team, progress or (lambda stage, part: None))
         mixture.emit(list(shares), into(texture))

@@ -15,8 +15,9 @@ import scipy.fft
 
 from app.synthesis.arrays import Progress, Real
 from app.synthesis.fourier.periodic import SmoothSpectrum
-from app.synthesis.fourier.spectral import random_spectrum
+from app.synthesis.fourier.spectral import half_spectrum
 from app.synthesis.fourier.spot import centre
+from app.synthesis.gaussian.adsn import white_noise
 
 
 def rayleigh(
@@ -69,7 +70,7 @@ def rayleigh(
     h = centre(h, height, width)
     if h.shape[:2] != (height, width):
         raise ValueError("The image has no phase to keep beyond its own size.")
-    noise = np.abs(random_spectrum(height, width, seed, rayleigh=True))
+    noise = np.abs(half_spectrum(white_noise, height, width, seed))
     z = np.empty((h.shape[2], height, width), np.float32)
     smooths = SmoothSpectrum(h).block(0, width // 2 + 1)
     for channel, smooth in enumerate(smooths):

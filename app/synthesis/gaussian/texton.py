@@ -25,9 +25,10 @@ from numpy.typing import NDArray
 
 from app.synthesis.arrays import Complex, Progress, Real
 from app.synthesis.fourier.periodic import periodic_planes
-from app.synthesis.fourier.spectral import column_blocks, random_block
+from app.synthesis.fourier.spectral import Block, column_blocks, random_bits
 from app.synthesis.fourier.spot import Spot
 from app.synthesis.fourier.spot_noise import convolve, sample_spot, transform
+from app.synthesis.gaussian.adsn import white_noise
 from app.synthesis.luminance import luminance
 
 
@@ -187,15 +188,16 @@ def texton_noise(
     return convolve(spots, shares, threads, progress, begin=0.45)
 
 
-def _draw(shares: Sequence[Complex], block: tuple[int, int], width: int, seed: int) -> None:
+def _draw(shares: Sequence[Complex], block: Block, width: int, seed: int) -> None:
     """Put the noises Ŵⱼ in the place of the shares vⱼ, in a block of columns."""
     columns = [share[:, slice(*block)] for share in shares]
     height = len(columns[0])
-    common = random_block(height, width, block, seed, rayleigh=True)
+    common = white_noise(height, width, block, random_bits(seed, block))
     if len(columns) == 1:
         columns[0] *= common
         return
-    own = [random_block(height, width, block, seed, rayleigh=True, stream=1 + j) for j in range(len(columns))]
+    streams = range(1, 1 + len(columns))
+    own = [white_noise(height, width, block, random_bits(seed, block, stream)) for stream in streams]
     for share, noise in zip(columns, own, strict=True):
         common -= share.conj() * noise
     for share, noise in zip(columns, own, strict=True):

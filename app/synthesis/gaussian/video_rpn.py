@@ -33,9 +33,10 @@ from numpy.typing import NDArray
 
 from app.synthesis.arrays import Complex, Progress, Real
 from app.synthesis.fourier.periodic import SmoothSpectrum
-from app.synthesis.fourier.spectral import random_spectrum
+from app.synthesis.fourier.spectral import half_spectrum
 from app.synthesis.fourier.spot import Profile, Spot, fade, window
 from app.synthesis.fourier.spot_noise import transform
+from app.synthesis.gaussian.rpn import random_phase
 from app.synthesis.gaussian.video_phase import pair, rows_of_phase
 from app.synthesis.gaussian.video_power import FilmPower
 from app.synthesis.parallel import Team
@@ -160,7 +161,7 @@ class MovingField:
         and, with ``randomise``, the phase random.
         """
         _, frames, height, _ = spectrum.shape
-        flat = random_spectrum(height, width, self._seed) if randomise else None
+        flat = half_spectrum(random_phase, height, width, self._seed) if randomise else None
         measure = FilmPower(spectrum.shape[1:], width)
 
         def transform_rows(row: int) -> None:

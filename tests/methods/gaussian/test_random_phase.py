@@ -13,6 +13,9 @@ from app.methods.gaussian.random_phase import RandomPhaseParams
 from app.methods.model import Context, Size, Source
 from app.methods.params import MAX_SEED
 from app.methods.registry import METHODS, method
+from app.synthesis.fourier.periodic import periodic_component
+from app.synthesis.gaussian import adsn as adsn_module
+from app.synthesis.gaussian import rpn as rpn_module
 from app.synthesis.gaussian.rpn import rpn
 
 NAMES = ["texture", "crop", "periodic", "smooth", "spot", "input-spectrum", "output-spectrum"]
@@ -239,3 +242,29 @@ def test_the_progress_never_goes_back_and_ends_at_one(name, parameters):
 def test_pillow_reads_the_texture():
     texture = pictures("adsn", crop(), width=60, height=61)["texture"]
     assert Image.open(io.BytesIO(texture.data)).convert("RGB").size == (60, 61)
+
+
+@pytest.mark.parametrize(
+    ("name", "module", "draw"), [("rpn", rpn_module, "random_phase"), ("adsn", adsn_module, "white_noise")]
+)
+def test_the_phase_is_drawn_in_the_numerics_file_of_the_methods_name(monkeypatch, name, module, draw):
+    """With the phase that the file draws held at 0, the texture is the crop's periodic component."""
+    source = crop()
+    drawn = pixels(pictures(name, source)["texture"])
+    monkeypatch.setattr(module, draw, lambda height, width, block, source: np.ones((height, block[1] - block[0]), "c8"))
+    held = pixels(pictures(name, source)["texture"])
+    expected = periodic_component(source.pixels)
+    np.testing.assert_allclose(held, expected.clip(0, 255), atol=0.51)
+    assert np.abs(drawn - expected).mean() > 5
+
+
+@BOTH
+def test_the_service_runs_the_function_that_the_file_is_named_after(monkeypatch, name):
+    """A change to `rpn_field` or `adsn_field`, through which `rpn` and `adsn` go too, changes the service's texture."""
+    module = {"rpn": rpn_module, "adsn": adsn_module}[name]
+    source = crop()
+    with_seed = pixels(pictures(name, source, seed=1)["texture"])
+    noise = module.Noise
+    monkeypatch.setattr(module, "Noise", lambda draw, *size, seed, **options: noise(draw, *size, seed=1, **options))
+    assert (pixels(pictures(name, source, seed=0)["texture"]) == with_seed).all()
+    assert (getattr(module, name)(source.pixels, seed=0) == getattr(module, name)(source.pixels, seed=1)).all()

@@ -3,9 +3,16 @@
 import numpy as np
 import pytest
 
-from app.synthesis.fourier.field import Field, Noise, synthesize
-from app.synthesis.fourier.spectral import random_spectrum
+from app.synthesis.fourier.field import Noise, NoiseField
+from app.synthesis.fourier.spectral import half_spectrum
+from app.synthesis.gaussian.adsn import white_noise
+from app.synthesis.gaussian.rpn import random_phase
 from app.synthesis.parallel import Team
+
+
+def synthesize(h, noise, threads=1):
+    with Team(threads) as team:
+        return NoiseField(h, noise, team).array()
 
 
 def plain_periodic(h):
@@ -45,7 +52,7 @@ def plain(h, noise):
     top, left = (noise.height - rows) // 2, (noise.width - columns) // 2
     spot[top : top + rows, left : left + columns] = (p - mean) * down[:, None, None] * across[None, :, None]
     spot *= np.sqrt(p.var((0, 1)).sum() / spot.var((0, 1)).sum())
-    half = random_spectrum(noise.height, noise.width, noise.seed, noise.rayleigh).astype(np.complex128)
+    half = half_spectrum(noise.draw, noise.height, noise.width, noise.seed).astype(np.complex128)
     half[0, 0] = 0
     factors = np.fft.fft2(np.fft.irfft2(half, s=(noise.height, noise.width)))
     spectrum = np.fft.fft2(spot, axes=(0, 1))
@@ -57,30 +64,30 @@ def plain(h, noise):
     return mean + z.real + smooth
 
 
-@pytest.mark.parametrize("rayleigh", [False, True])
+@pytest.mark.parametrize("draw", [random_phase, white_noise])
 @pytest.mark.parametrize("options", [{}, {"phase": "replace"}, {"add_smooth": True}, {"periodic": False}])
 @pytest.mark.parametrize("size", [(64, 64), (65, 97), (101, 128), (1, 50), (50, 1), (2, 200)])
-def test_at_the_same_size_it_agrees_with_the_plain_formula(size, options, rayleigh):
+def test_at_the_same_size_it_agrees_with_the_plain_formula(size, options, draw):
     h = np.random.default_rng(0).uniform(0, 255, (*size, 3)).astype(np.float32)
-    noise = Noise(*size, seed=11, rayleigh=rayleigh, **options)
+    noise = Noise(draw, *size, seed=11, **options)
     np.testing.assert_allclose(synthesize(h, noise, threads=2), plain(h, noise), atol=255 * 1e-5)
 
 
-@pytest.mark.parametrize("rayleigh", [False, True])
+@pytest.mark.parametrize("draw", [random_phase, white_noise])
 @pytest.mark.parametrize("options", [{}, {"phase": "replace"}, {"periodic": False}])
 @pytest.mark.parametrize("size", [(128, 128), (131, 99), (64, 300), (70, 64)])
-def test_at_a_larger_size_it_agrees_with_the_plain_formula(size, options, rayleigh):
+def test_at_a_larger_size_it_agrees_with_the_plain_formula(size, options, draw):
     h = np.random.default_rng(1).uniform(0, 255, (64, 64, 2)).astype(np.float32)
-    noise = Noise(*size, seed=12, rayleigh=rayleigh, alpha=0.2, **options)
+    noise = Noise(draw, *size, seed=12, alpha=0.2, **options)
     np.testing.assert_allclose(synthesize(h, noise, threads=2), plain(h, noise), atol=255 * 1e-5)
 
 
 @pytest.mark.parametrize("size", [(40, 50), (90, 77)])
 def test_the_power_is_the_squared_modulus_of_the_noise(size):
     h = np.random.default_rng(2).uniform(0, 255, (40, 50, 3)).astype(np.float32)
-    noise = Noise(*size, seed=3, rayleigh=True)
+    noise = Noise(white_noise, *size, seed=3)
     with Team(2) as team:
-        power = Field(h, noise, team, lambda stage, part: None).power()
+        power = NoiseField(h, noise, team).power()
     z = synthesize(h, noise)
     expected = (np.abs(np.fft.rfft2(z - z.mean((0, 1), dtype=np.float64), axes=(0, 1))) ** 2).mean(2)
     np.testing.assert_allclose(power, expected, atol=1e-5 * expected.max())
@@ -91,22 +98,22 @@ def test_it_does_not_mind_how_the_sample_lies_in_memory(order):
     h = np.random.default_rng(4).uniform(0, 255, (30, 40, 3)).astype(np.float32)
     other = np.asfortranarray(h) if order == "columns" else np.repeat(h, 2, axis=0)[::2]
     for size in ((30, 40), (60, 61)):
-        assert (synthesize(other, Noise(*size)) == synthesize(h, Noise(*size))).all()
+        assert (synthesize(other, Noise(random_phase, *size)) == synthesize(h, Noise(random_phase, *size))).all()
 
 
 def test_the_sample_is_not_changed():
     h = np.random.default_rng(5).uniform(0, 255, (30, 40, 3)).astype(np.float32)
     before = h.copy()
-    synthesize(h, Noise(30, 40))
-    synthesize(h, Noise(60, 41))
-    synthesize(h, Noise(60, 41, periodic=False))
+    synthesize(h, Noise(random_phase, 30, 40))
+    synthesize(h, Noise(random_phase, 60, 41))
+    synthesize(h, Noise(random_phase, 60, 41, periodic=False))
     assert (h == before).all()
 
 
 def test_rows_come_each_once_and_as_often_as_asked_for():
     h = np.random.default_rng(6).uniform(0, 255, (30, 40, 1)).astype(np.float32)
     with Team(2) as team:
-        field = Field(h, Noise(150, 90), team, lambda stage, part: None).randomise()
+        field = NoiseField(h, Noise(random_phase, 150, 90), team).randomise()
         for _ in range(2):
             seen = []
             field.emit(lambda first, planes, seen=seen: seen.extend(first + y for y in range(len(next(planes)))))

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from app.synthesis.fourier.spectral import random_spectrum
-from app.synthesis.fourier.spot_noise import asymptotic, sample_spot
-from app.synthesis.gaussian.adsn import adsn
+from app.synthesis.fourier.spectral import half_spectrum
+from app.synthesis.fourier.spot_noise import sample_spot
+from app.synthesis.gaussian.adsn import adsn, adsn_of_spot, white_noise
 from app.synthesis.gaussian.dsn import POINTS, counts, dsn, excess_kurtosis, impulses, shape, standard_spot
 from tests.synthesis.images import correlations, image, whole
 from tests.synthesis.stopping import stops_at
@@ -103,7 +103,7 @@ def test_the_excess_kurtosis_of_a_pixel_falls_as_one_over_n():
 def test_for_large_n_a_pixel_has_the_law_of_the_adsns():
     spot, draws = sample_spot(image(8, 8, 1), 8, 8), 600
     many = np.array([dsn(spot, 10**8, seed=seed)[3, 5, 0] for seed in range(draws)])
-    limit = np.array([asymptotic(spot, seed)[3, 5, 0] for seed in range(draws)])
+    limit = np.array([adsn_of_spot(spot, seed)[3, 5, 0] for seed in range(draws)])
     assert stats.ks_2samp(many, limit).pvalue > LIKELY
     assert stats.kstest(many, stats.norm(spot.mean[0], whole(spot).std()).cdf).pvalue > LIKELY
     # the excess kurtosis of n normal values has deviation sqrt(24 / n)
@@ -111,8 +111,8 @@ def test_for_large_n_a_pixel_has_the_law_of_the_adsns():
 
 
 def test_for_large_n_the_white_noise_has_the_law_of_the_adsns():
-    """Rayleigh modulus, uniform phase, as `random_spectrum` has at every frequency with −k ≠ k."""
-    many, limit = np.fft.rfft2(impulses(*MANY, 10**9, seed=8)), random_spectrum(*MANY, seed=8, rayleigh=True)
+    """Rayleigh modulus, uniform phase, as `white_noise` has at every frequency with −k ≠ k."""
+    many, limit = np.fft.rfft2(impulses(*MANY, 10**9, seed=8)), half_spectrum(white_noise, *MANY, seed=8)
     for part in (np.abs, np.angle):
         assert stats.ks_2samp(part(many[:, 1:]).ravel(), part(limit[:, 1:]).ravel()).pvalue > LIKELY
 
@@ -120,7 +120,7 @@ def test_for_large_n_the_white_noise_has_the_law_of_the_adsns():
 @pytest.mark.parametrize("size", [(40, 51), (70, 90), (20, 77)])
 def test_the_limit_is_the_adsn_of_the_same_seed(size):
     h = image(40, 51, 3)
-    np.testing.assert_allclose(asymptotic(sample_spot(h, *size), 3), adsn(h, *size, seed=3), atol=1e-3)
+    np.testing.assert_allclose(adsn_of_spot(sample_spot(h, *size), 3), adsn(h, *size, seed=3), atol=1e-3)
 
 
 def test_it_depends_on_the_seed_and_not_on_the_threads():

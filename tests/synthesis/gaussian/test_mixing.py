@@ -8,8 +8,8 @@ import itertools
 import numpy as np
 import pytest
 
-from app.synthesis.fourier.spectral import random_spectrum
-from app.synthesis.gaussian.adsn import adsn
+from app.synthesis.fourier.spectral import half_spectrum
+from app.synthesis.gaussian.adsn import adsn, white_noise
 from app.synthesis.gaussian.mixing import mix
 
 SIZES = [(16, 16), (17, 20), (37, 41), (1, 12), (12, 1)]
@@ -28,7 +28,7 @@ def spot(texture, seed=1):
     height, width = texture.shape[:2]
     spectrum = np.fft.rfft2(texture.astype(np.float64), axes=(0, 1))
     spectrum[0, 0] = 0
-    return spectrum / random_spectrum(height, width, seed, rayleigh=True)[:, :, None]
+    return spectrum / half_spectrum(white_noise, height, width, seed)[:, :, None]
 
 
 def inner(f, g):

@@ -5,8 +5,8 @@ import pytest
 from scipy import stats
 
 from app.synthesis.fourier.periodic import periodic_component
-from app.synthesis.fourier.spectral import random_spectrum
-from app.synthesis.gaussian.adsn import adsn
+from app.synthesis.fourier.spectral import half_spectrum
+from app.synthesis.gaussian.adsn import adsn, white_noise
 from app.synthesis.gaussian.cut_texton import cut_texton
 from app.synthesis.gaussian.texton import extend_texton, radii, texton, texton_noise
 from app.synthesis.luminance import luminance
@@ -109,7 +109,7 @@ def test_its_noise_is_the_adsn_of_the_extended_texton(size):
     for channel in range(3):
         both = strong[:, :, 0] & strong[:, :, channel]
         np.testing.assert_allclose(noise[:, :, channel][both], noise[:, :, 0][both], rtol=1e-2)
-    drawn = random_spectrum(*size, seed=6, rayleigh=True)[:, 1:-1][strong[:, :, 0]]
+    drawn = half_spectrum(white_noise, *size, seed=6)[:, 1:-1][strong[:, :, 0]]
     noise = noise[:, :, 0][strong[:, :, 0]]
     np.testing.assert_allclose(np.abs(noise), np.abs(drawn), rtol=1e-2)
     assert stats.kstest(np.angle(noise), stats.uniform(-np.pi, 2 * np.pi).cdf).pvalue > LIKELY

@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.synthesis.fourier.periodic import periodic_component
-from app.synthesis.fourier.spectral import random_spectrum
+from app.synthesis.fourier.spectral import half_spectrum
 from app.synthesis.fourier.spot import window
-from app.synthesis.gaussian.rpn import rpn
+from app.synthesis.gaussian.rpn import random_phase, rpn
 from app.synthesis.gaussian.video_phase import pair, rows_of_phase
 from app.synthesis.gaussian.video_rpn import jump_share, middle, video_rpn
 from tests.synthesis.images import image
@@ -121,7 +121,7 @@ def test_what_is_taken_out_is_the_poisson_problem_of_the_jump(shape):
 
 def whole_phase(shape, seed):
     frames, height, width = shape
-    flat = random_spectrum(height, width, seed)
+    flat = half_spectrum(random_phase, height, width, seed)
     phase = np.empty((frames, height, width // 2 + 1), np.complex64)
     for row in range(height // 2 + 1):
         phase[:, pair(row, height)] = rows_of_phase(shape, row, flat, seed)
