@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.images.decode import Limits, decode
-from app.images.video.reader import read_film
+from app.images.video.reader import read_video
 from app.methods.model import Context, Film, Picture, Source
 from app.methods.output.films import texture_film
 from app.methods.registry import method
@@ -93,7 +93,7 @@ def made(name: str, frames: int) -> NDArray[np.uint8]:
     with scratch() as context:
         texture = next(pictures(name, frames, context))
         assert isinstance(texture.data, Path)
-        return np.stack(list(read_film(texture.data)))
+        return np.stack(list(read_video(texture.data)))
 
 
 def written(frames: NDArray[np.uint8]) -> Callable[[], None]:

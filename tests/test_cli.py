@@ -14,7 +14,7 @@ from PIL import Image
 from typer.testing import CliRunner, Result
 
 from app.cli.commands import application
-from app.images.video.reader import read_film
+from app.images.video.reader import read_video
 from app.methods.registry import METHODS
 from app.settings import ROOT, Settings
 from tests.methods.runs import SMALL
@@ -188,7 +188,7 @@ def test_every_method_runs(tmp_path: Path, name: str) -> None:
     times = ["--time", "3,12"] if method.moving else []
     done = synthesize(*files, out, "--method", name, *crops, *times, *small, "--seed", "3")
     assert done.exit_code == 0, done.output
-    assert (next(read_film(out)) if method.moving else pixels(out)).shape == (48, 64, 3)
+    assert (next(read_video(out)) if method.moving else pixels(out)).shape == (48, 64, 3)
 
 
 def test_several_photographs_are_taken_in_their_order_each_with_its_crop(tmp_path: Path) -> None:

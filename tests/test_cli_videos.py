@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.images.video.reader import read_film
-from app.images.video.writers import write_film
+from app.images.video.reader import read_video
+from app.images.video.writers import write_video
 from tests.test_cli import CHINA, synthesize
 
 
@@ -14,7 +14,7 @@ from tests.test_cli import CHINA, synthesize
 def clip(tmp_path: Path) -> Path:
     path = tmp_path / "clip.webm"
     film = np.random.default_rng(5).integers(0, 256, (10, 40, 48, 3), dtype=np.uint8)
-    write_film(film, path, "webm", count=len(film), rate=10.0)
+    write_video(film, path, "webm", count=len(film), rate=10.0)
     return path
 
 
@@ -25,7 +25,7 @@ def test_a_crop_of_some_frames_becomes_a_video_of_the_asked_size_and_length(clip
     done = synthesize(clip, out, "--method", "video-rpn", *options)
     assert done.exit_code == 0, done.output
     assert "64 × 48 pixels, 9 frames, video-rpn, seed 0" in done.stdout
-    frames = list(read_film(out))
+    frames = list(read_video(out))
     assert (len(frames), frames[0].shape) == (9, (48, 64, 3))
 
 

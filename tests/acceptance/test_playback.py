@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from app.images.video.writers import Kind, write_film
+from app.images.video.writers import Kind, write_video
 from tests.images.clips import psnr
 from tests.images.video.natural import natural_film
 
@@ -44,7 +44,7 @@ PLAY = """async ([data, type]) => {
 
 
 def played(browser: Any, film: np.ndarray, kind: Kind, path: Path, rate: float) -> dict[str, Any]:
-    write_film(iter(film), path, kind, count=len(film), rate=rate)
+    write_video(iter(film), path, kind, count=len(film), rate=rate)
     page = browser.new_page()
     try:
         data = base64.b64encode(path.read_bytes()).decode()

@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 from playwright.sync_api import Page, Route, expect
 
-from app.images.video.reader import read_film
+from app.images.video.reader import read_video
 
 FRAMES = {"texture": 20, "crop": 16}
 RATE = 24
@@ -53,7 +53,7 @@ def arrays(site: Any, films: dict[str, Any], tmp_path_factory: pytest.TempPathFa
     for name in FRAMES:
         path: Path = tmp_path_factory.mktemp("films") / name
         path.write_bytes(site.client.get(f"/api/v1/experiments/{films['id']}/outputs/{name}").content)
-        found[name] = np.stack(list(read_film(path)))
+        found[name] = np.stack(list(read_video(path)))
         assert min(map(difference, found[name], np.roll(found[name], 1, axis=0))) > 2 * NOISE  # none is like the next
     return found
 

@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 from playwright.sync_api import Page, expect
 
-from app.images.video.reader import read_film
+from app.images.video.reader import read_video
 from app.methods.registry import METHODS
 
 # Whatever method has one of these parameters is quick with it, on a crop as small as this.
@@ -140,7 +140,7 @@ def works(visitors: Any, site: Any, shown_pixels: Shown, until: Callable[..., An
         texture = site.client.get(record["outputs"][0]["url"]).content
         if moves:
             (tmp_path / "texture").write_bytes(texture)
-            assert_plays(page, np.stack(list(read_film(tmp_path / "texture"))), shown_pixels, until)
+            assert_plays(page, np.stack(list(read_video(tmp_path / "texture"))), shown_pixels, until)
         else:
             shown = shown_pixels(page, '.stage img[src*="/outputs/texture"]')
             assert np.array_equal(shown, np.asarray(Image.open(BytesIO(texture)).convert("RGB")))

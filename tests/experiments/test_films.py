@@ -15,8 +15,8 @@ from app.experiments.model import Experiment, Sample, Status
 from app.experiments.preparation import NewExperiment, NewInput
 from app.experiments.service import Service
 from app.images.crop import Frames, Rectangle
-from app.images.video.reader import read_film
-from app.images.video.writers import write_film
+from app.images.video.reader import read_video
+from app.images.video.writers import write_video
 from tests.experiments.running import finished
 
 CROP, TIME = Rectangle(4, 2, 40, 36), Frames(2, 8)
@@ -30,7 +30,7 @@ def film() -> np.ndarray:
 @pytest.fixture
 def clip(film: np.ndarray, tmp_path: Path) -> Path:
     path = tmp_path / "clip.webm"
-    write_film(film, path, "webm", count=len(film), rate=12.0)
+    write_video(film, path, "webm", count=len(film), rate=12.0)
     return path
 
 
@@ -62,18 +62,18 @@ def test_a_clip_is_kept_as_it_is(service: Service, sample: Sample, film: np.ndar
     assert sample.media_type == "video/webm"
     path, media_type = service.film(sample.id, "webm")
     assert media_type == "video/webm"
-    assert np.array_equal(np.stack(list(read_film(path))), film)
+    assert np.array_equal(np.stack(list(read_video(path))), film)
 
 
 def test_the_method_gets_the_crop_of_the_time_range(service: Service, experiment: Experiment, film: np.ndarray) -> None:
     _, path = service.output(experiment.id, "crop")
-    assert np.array_equal(np.stack(list(read_film(path))), film[2:10, 2:38, 4:44])
+    assert np.array_equal(np.stack(list(read_video(path))), film[2:10, 2:38, 4:44])
 
 
 def test_the_texture_is_a_film_of_the_length_that_was_asked_for(service: Service, experiment: Experiment) -> None:
     output, path = service.output(experiment.id, "texture")
     assert (output.media_type, output.frames, output.rate) == ("video/webm", 10, 12.0)
-    assert len(list(read_film(path))) == 10
+    assert len(list(read_video(path))) == 10
     assert experiment.diagnostics["structure"]["outputs"]
 
 

@@ -12,7 +12,7 @@ import pytest
 
 from app.errors import BrokenFileError, UnsupportedFormatError
 from app.images.decode import Decoded
-from app.images.video.writers import write_film
+from app.images.video.writers import write_video
 from tests.images.clips import BT601, BT709, FULL, LIMITED, Film, lossless, moving, psnr, video
 
 Read = Callable[..., Decoded]
@@ -181,7 +181,7 @@ def test_our_own_lossless_videos_are_read_as_they_were_written(
     read: Read, tmp_path: Path, channels: int, rate: float
 ) -> None:
     film = moving(40)[..., :channels]
-    write_film(iter(film), tmp_path / "film", "webm", count=40, rate=rate)
+    write_video(iter(film), tmp_path / "film", "webm", count=40, rate=rate)
     decoded = read((tmp_path / "film").read_bytes())
     np.testing.assert_array_equal(film_of(decoded), film)
     assert decoded.rate == pytest.approx(rate, rel=1e-7)

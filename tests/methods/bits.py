@@ -19,7 +19,7 @@ from numpy._core._multiarray_umath import __cpu_features__
 
 from app.errors import InvalidInputError
 from app.images.video import writers
-from app.images.video.reader import read_film
+from app.images.video.reader import read_video
 from app.methods.model import Method
 from app.methods.registry import METHODS
 from tests.methods.runs import run, sources_for
@@ -76,7 +76,7 @@ def main(directory: Path) -> None:
                 if isinstance(picture.data, Path):
                     picture.data.rename(target)
                     if picture.media_type.startswith("video"):
-                        np.save(directory / f"{target.name}.npy", np.stack(list(read_film(target))))
+                        np.save(directory / f"{target.name}.npy", np.stack(list(read_video(target))))
                 else:
                     target.write_bytes(picture.data)
     print(json.dumps([feature for feature, there in __cpu_features__.items() if there]))

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from app.errors import CancelledError
-from app.images.video.reader import read_film
+from app.images.video.reader import read_video
 from app.methods.model import Film, Method, Picture, Source
 from app.methods.registry import METHODS
 from tests.methods.runs import run, sources_for
@@ -20,7 +20,7 @@ CROPS = ["crop", "crop-mp4", "crop-cube"]
 
 def film_of(picture: Picture) -> np.ndarray:
     assert isinstance(picture.data, Path)
-    return np.stack(list(read_film(picture.data)))
+    return np.stack(list(read_video(picture.data)))
 
 
 @EVERY

@@ -13,7 +13,7 @@ from app.images.convert import PREVIEW, THUMBNAIL, Format, convert, depth_of, fl
 from app.images.png_writer import encode_png
 from app.images.stored_video import read_frame
 from app.images.video.reader import first_frame
-from app.images.video.writers import write_film
+from app.images.video.writers import write_video
 
 FilmFormat = Literal["mp4", "webm"]
 DEEP_FORMATS = ("png", "tiff")
@@ -78,7 +78,7 @@ class Pictures:
 
         def write(path: Path) -> None:
             pictures = (read_frame(stored, frame, sample.width, sample.height) for frame in range(sample.frames))
-            write_film(map(flattened, pictures), path, file_format, count=sample.frames, rate=sample.rate)
+            write_video(map(flattened, pictures), path, file_format, count=sample.frames, rate=sample.rate)
 
         name = f"{sample.digest}-{sample.height}-{sample.rate:g}.{file_format}"
         return self._cache.file(name, write), f"video/{file_format}"

@@ -1,4 +1,4 @@
-"""The video cube: a film as a block of stacked frames, whose vertical axis is time, as in the report's figures."""
+"""The video cube: a video as a block of stacked frames, whose vertical axis is time, as in the report's figures."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,12 +9,12 @@ from app.images.convert import GROUND
 LONGEST = 720  # pixels of the block, slanted sides and all
 MARGIN = 16
 DEPTH = 0.5  # of the slanted sides, as in cabinet projection: drawn in full they look too long
-HEIGHT, MOST_STRETCHED = 0.75, 4  # a short film is stretched in time to this part of its width, so often at most
-FRONT, SIDE = 0.86, 0.7  # brightness of the two walls; the top has the film's own
+HEIGHT, MOST_STRETCHED = 0.75, 4  # a short video is stretched in time to this part of its width, so often at most
+FRONT, SIDE = 0.86, 0.7  # brightness of the two walls; the top has the video's own
 
 
 class VideoCube:
-    """The block that the frames of a film make when each is laid upon the one before.
+    """The block that the frames of a video make when each is laid upon the one before.
 
     One looks down on the last frame. The front wall is the bottom row of every frame, the right wall the right column:
     what does not move makes upright stripes there, what moves evenly slanted ones.
@@ -22,7 +22,7 @@ class VideoCube:
     Parameters
     ----------
     width, height, channels, count : int
-        Of the film.
+        Of the video.
     """
 
     def __init__(self, width: int, height: int, channels: int, count: int) -> None:

@@ -1,4 +1,4 @@
-"""Several files of one film, written at once: every encoder works in a thread of its own."""
+"""Several files of one video, written at once: every encoder works in a thread of its own."""
 
 from collections import deque
 from collections.abc import Callable, Sequence
@@ -6,7 +6,7 @@ from concurrent.futures import Future, ThreadPoolExecutor, wait
 from types import TracebackType
 from typing import Self
 
-from app.images.video.writers import FilmWriter, Frame
+from app.images.video.writers import Frame, VideoWriter
 
 WAITING = 2  # frames that wait for an encoder before their maker does
 PATIENCE = 0.1  # seconds between two calls of `progress` while encoders finish
@@ -17,11 +17,11 @@ class Encoding:
 
     Parameters
     ----------
-    writers : sequence of FilmWriter
+    writers : sequence of VideoWriter
         It closes them.
     """
 
-    def __init__(self, writers: Sequence[FilmWriter]) -> None:
+    def __init__(self, writers: Sequence[VideoWriter]) -> None:
         self._writers = writers
         self._threads = [ThreadPoolExecutor(1, "encode") for _ in writers]
         self._pending: list[deque[Future[None]]] = [deque() for _ in writers]

@@ -1,4 +1,4 @@
-"""Frames of the films that `app.images.video.writers` has written."""
+"""Frames of the videos that `app.images.video.writers` has written."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,8 +13,8 @@ from app.images.video.writers import Frame, rows
 INTERPOLATED = Interpolation.BILINEAR | Interpolation.ACCURATE_RND | Interpolation.FULL_CHR_H_INT
 
 
-def read_film(path: Path) -> Iterator[Frame]:
-    """Frames (H, W, C) uint8, one by one; C is 1 for a WebM film written from one channel, otherwise 3."""
+def read_video(path: Path) -> Iterator[Frame]:
+    """Frames (H, W, C) uint8, one by one; C is 1 for a WebM video written from one channel, otherwise 3."""
     with av.open(path) as container:
         for frame in container.decode(video=0):
             if frame.format.name == "yuv420p" and frame.color_range == ColorRange.JPEG:
@@ -25,4 +25,4 @@ def read_film(path: Path) -> Iterator[Frame]:
 
 def first_frame(path: Path) -> Frame:
     """The first frame, (H, W, C) uint8, decoded alone."""
-    return next(read_film(path))
+    return next(read_video(path))

@@ -1,10 +1,10 @@
-"""Films as files, written frame by frame: WebM (VP9), MP4 (H.264) and animated WebP.
+"""Videos as files, written frame by frame: WebM (VP9), MP4 (H.264) and animated WebP.
 
 WebM is exact: VP9 without loss, of red, green and blue as they are (its profile 1), so that nothing is rounded between
-colour spaces. A film of one channel becomes the luma, in full range, of a film without colour. Only a film of more than
-`MOST_LOSSLESS` bytes is coded with some loss, with chroma for every pixel. MP4 is for players that know nothing else:
-one chroma value for four pixels, which alone costs a texture of fine colours more than the coding does, and even
-sides: an odd film is continued by its last column or row, see `repeated`. (With chroma for every pixel H.264 codes odd
+colour spaces. A video of one channel becomes the luma, in full range, of a video without colour. Only a video of more
+than `MOST_LOSSLESS` bytes is coded with some loss, with chroma for every pixel. MP4 is for players that know nothing
+else: one chroma value for four pixels, which alone costs a texture of fine colours more than the coding does, and even
+sides: an odd video is continued by its last column or row, see `repeated`. (With chroma for every pixel H.264 codes odd
 sides too. Browsers play that on Linux, but for 64 × 1 in Firefox; the decoders of phones, of Safari and of Windows do
 not, and they are what the file is for. WebM has any size.)
 
@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 Frame = NDArray[np.uint8]
 Kind = Literal["webm", "mp4", "webp"]
 
-MOST_LOSSLESS = 1 << 27  # bytes of all frames; their file has up to 0.8 as many if the film is noise
+MOST_LOSSLESS = 1 << 27  # bytes of all frames; their file has up to 0.8 as many if the video is noise
 LARGEST_DENOMINATOR = 1001  # of a rate, as in 24000/1001
 PREVIEW_SIDE, PREVIEW_FRAMES = 256, 100  # at most
 NO_CHROMA = 128
@@ -51,7 +51,7 @@ def exact_rate(rate: float) -> Fraction:
 
 
 def repeated(width: int, height: int) -> str:
-    """What the MP4 of a film of this size shows twice; nothing if its sides are even.
+    """What the MP4 of a video of this size shows twice; nothing if its sides are even.
 
     Examples
     --------
@@ -61,18 +61,18 @@ def repeated(width: int, height: int) -> str:
     return " and ".join(name for name, side in (("last column", width), ("last row", height)) if side % 2)
 
 
-class FilmWriter:
-    """A film's file that grows frame by frame; the memory it takes does not.
+class VideoWriter:
+    """A video's file that grows frame by frame; the memory it takes does not.
 
     Parameters
     ----------
     path : Path
         Where; its name may end as it likes.
     kind : {"webm", "mp4", "webp"}
-        WebP is a preview of at most 256 pixels a side and 100 frames: of a long film it shows every second, third, …
+        WebP is a preview of at most 256 pixels a side and 100 frames: of a long video it shows every second, third, …
         for as much longer.
     width, height, channels, count : int
-        Of the film: 1 channel is grey, 3 are RGB; ``count`` is the number of frames.
+        Of the video: 1 channel is grey, 3 are RGB; ``count`` is the number of frames.
     rate : float
         Frames a second.
 
@@ -127,20 +127,20 @@ class FilmWriter:
             self.path.unlink(missing_ok=True)
 
 
-def write_film(frames: Iterable[Frame], path: Path, kind: Kind, *, count: int, rate: float) -> None:
-    """Write a film's frames, one in memory at a time.
+def write_video(frames: Iterable[Frame], path: Path, kind: Kind, *, count: int, rate: float) -> None:
+    """Write a video's frames, one in memory at a time.
 
     Parameters
     ----------
     frames : iterable of ndarray of uint8, shape (H, W, C)
         At least one.
     path, kind, count, rate
-        See `FilmWriter`.
+        See `VideoWriter`.
     """
     left = iter(frames)
     first = next(left)
     height, width, channels = first.shape
-    writer = FilmWriter(path, kind, width=width, height=height, channels=channels, count=count, rate=rate)
+    writer = VideoWriter(path, kind, width=width, height=height, channels=channels, count=count, rate=rate)
     try:
         writer.write(first)
         for frame in left:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from app.images.png_writer import encode_png
 from app.images.video.cube import VideoCube
 from app.images.video.encoding import Encoding
-from app.images.video.writers import FilmWriter, Frame, Kind, repeated
+from app.images.video.writers import Frame, Kind, VideoWriter, repeated
 from app.methods.model import Context, Picture, Source
 
 
@@ -104,11 +104,11 @@ def _written(
     finishing: Callable[[float], None],
 ) -> Iterator[Picture]:
     width, height, channels, count = size
-    writers: list[FilmWriter] = []
+    writers: list[VideoWriter] = []
     try:
         for file in files:
             path = scratch / uuid4().hex
-            writer = FilmWriter(path, file.kind, width=width, height=height, channels=channels, count=count, rate=rate)
+            writer = VideoWriter(path, file.kind, width=width, height=height, channels=channels, count=count, rate=rate)
             writers.append(writer)
         with Encoding(writers) as encoding:
             for frame in frames:

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.images.video.reader import read_film
-from app.images.video.writers import write_film
+from app.images.video.reader import read_video
+from app.images.video.writers import write_video
 from tests.acceptance.engines.walk import CROP, TEXTURE, crop_of, on_sample, run, scale_of, upload
 from tests.acceptance.engines.window import PATIENCE, Window, difference
 from tests.acceptance.waiting import until
@@ -35,21 +35,21 @@ def test_the_whole_way_of_a_clip(
     for name in ("crop", "texture"):
         file = tmp_path / name
         file.write_bytes(site.client.get(f"/api/v1{path}/outputs/{name}").content)
-        films[name] = np.stack(list(read_film(file)))
+        films[name] = np.stack(list(read_video(file)))
         assert films[name].shape == (COUNT, height, width, 3)
     assert_result(window, films)
     window.open(path)
     assert_result(window, films)
     kept = window.download(lambda: window.click(".downloads a", "WebM"))
-    assert np.array_equal(np.stack(list(read_film(kept))), films["texture"])
+    assert np.array_equal(np.stack(list(read_video(kept))), films["texture"])
 
 
 @pytest.fixture(scope="module")
 def clip(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """What a visitor uploads: sand under water, 320 × 320 pixels, as MP4."""
     path = tmp_path_factory.mktemp("clip") / "water.mp4"
-    frames = read_film(Path(__file__).parents[3] / "samples" / "sand_under_water.mp4")
-    write_film(frames, path, "mp4", count=FRAMES, rate=RATE)
+    frames = read_video(Path(__file__).parents[3] / "samples" / "sand_under_water.mp4")
+    write_video(frames, path, "mp4", count=FRAMES, rate=RATE)
     return path
 
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from app.images.video.encoding import WAITING, Encoding
-from app.images.video.reader import read_film
-from app.images.video.writers import FilmWriter
+from app.images.video.reader import read_video
+from app.images.video.writers import VideoWriter
 from tests.images.video.natural import natural_film
 
 
@@ -52,14 +52,14 @@ def encoders() -> list[str]:
 def test_every_writer_gets_every_frame(tmp_path):
     film = natural_film(9, 32, 48)
     writers = [
-        FilmWriter(tmp_path / name, "webm", width=48, height=32, channels=3, count=9, rate=24.0) for name in "ab"
+        VideoWriter(tmp_path / name, "webm", width=48, height=32, channels=3, count=9, rate=24.0) for name in "ab"
     ]
     parts = []
     with Encoding(writers) as encoding:
         for frame in film:
             encoding.write(frame)
         encoding.finish(parts.append)
-    assert all((np.stack(list(read_film(tmp_path / name))) == film).all() for name in "ab")
+    assert all((np.stack(list(read_video(tmp_path / name))) == film).all() for name in "ab")
     assert parts == sorted(parts)
     assert parts[-1] == 1
     assert encoders() == []

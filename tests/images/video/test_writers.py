@@ -9,8 +9,8 @@ import pytest
 from PIL import Image
 
 from app.images.video import writers
-from app.images.video.reader import first_frame, read_film
-from app.images.video.writers import FilmWriter, repeated, write_film
+from app.images.video.reader import first_frame, read_video
+from app.images.video.writers import VideoWriter, repeated, write_video
 from tests.images.clips import psnr
 from tests.images.video.memory import printed
 from tests.images.video.natural import natural_film
@@ -19,12 +19,12 @@ PHOTOGRAPHS = ["sand_desert009.png", "sky_clouds.jpg", "soil_ground010.png", "pl
 
 
 def written(path: Path, film: np.ndarray, kind: str, rate: float = 24.0) -> Path:
-    write_film(iter(film), path, kind, count=len(film), rate=rate)
+    write_video(iter(film), path, kind, count=len(film), rate=rate)
     return path
 
 
 def read(path: Path) -> np.ndarray:
-    return np.stack(list(read_film(path)))
+    return np.stack(list(read_video(path)))
 
 
 @pytest.mark.parametrize("channels", [1, 3])
@@ -81,7 +81,7 @@ def test_an_odd_mp4_repeats_its_last_row_and_column_and_says_so(tmp_path, height
     """The file's size is what the writer says, and only the sides that are named grow."""
     film = natural_film(6, height, width, channels)
     path = tmp_path / "film"
-    writer = FilmWriter(path, "mp4", width=width, height=height, channels=channels, count=6, rate=24.0)
+    writer = VideoWriter(path, "mp4", width=width, height=height, channels=channels, count=6, rate=24.0)
     for frame in film:
         writer.write(frame)
     writer.finish()
@@ -148,7 +148,7 @@ def test_the_preview_is_small_and_loops_for_ever(tmp_path, channels):
 @pytest.mark.parametrize(("count", "rate", "shown"), [(100, 25.0, 100), (101, 25.0, 51), (250, 24000 / 1001, 84)])
 def test_a_long_preview_leaves_frames_out_and_lasts_as_long(tmp_path, count, rate, shown):
     film = np.random.default_rng(0).integers(0, 256, (count, 8, 8, 3), dtype=np.uint8)
-    writer = FilmWriter(tmp_path / "film", "webp", width=8, height=8, channels=3, count=count, rate=rate)
+    writer = VideoWriter(tmp_path / "film", "webp", width=8, height=8, channels=3, count=count, rate=rate)
     for frame in film:
         writer.write(frame)
     writer.finish()
@@ -168,7 +168,7 @@ def test_a_long_preview_leaves_frames_out_and_lasts_as_long(tmp_path, count, rat
 @pytest.mark.parametrize("frames", [0, 3])
 @pytest.mark.parametrize("kind", ["webm", "mp4", "webp"])
 def test_what_is_not_finished_does_not_stay(tmp_path, kind, frames):
-    writer = FilmWriter(tmp_path / "film", kind, width=32, height=32, channels=3, count=9, rate=24.0)
+    writer = VideoWriter(tmp_path / "film", kind, width=32, height=32, channels=3, count=9, rate=24.0)
     for frame in natural_film(frames, 32, 32) if frames else ():
         writer.write(frame)
     writer.close()
@@ -179,11 +179,11 @@ WRITING = """
 import sys
 import numpy as np
 from pathlib import Path
-from app.images.video.writers import write_film
+from app.images.video.writers import write_video
 kind, side, count = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
 noise = np.random.default_rng(0).integers(0, 256, (side + 40, side + 40, 3), dtype=np.uint8)
 frames = (np.ascontiguousarray(noise[t % 39 : t % 39 + side, t % 37 : t % 37 + side]) for t in range(count))
-write_film(frames, Path(sys.argv[4]), kind, count=count, rate=24.0)
+write_video(frames, Path(sys.argv[4]), kind, count=count, rate=24.0)
 print(peak())
 """
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from imagecodecs import png_decode
 
-from app.images.video.reader import read_film
+from app.images.video.reader import read_video
 from app.methods.gaussian.video_rpn import VIDEO_RPN
 from app.methods.model import Context, Film, Size, Source
 from app.methods.output.films import film_memory
@@ -44,7 +44,7 @@ def test_it_gives_the_videos_files_its_views_and_the_crop(tmp_path):
 def test_the_decoded_texture_is_the_noise_rounded(tmp_path, channels):
     source = clip(channels=channels)
     texture = run(source, tmp_path, seed=3)["texture"]
-    decoded = np.stack(list(read_film(texture.data)))
+    decoded = np.stack(list(read_video(texture.data)))
     expected = np.clip(np.rint(video_rpn(source.film.frames, seed=3)), 0, 255)
     assert (decoded == expected).all()
 
@@ -64,7 +64,7 @@ def test_the_average_is_the_crops_and_says_what_stands_still(tmp_path):
 
 def test_a_clip_that_stands_still_gives_a_video_that_does(tmp_path):
     """A value half way between two levels may be rounded to either."""
-    decoded = np.stack(list(read_film(run(clip(still=True), tmp_path, frames=9)["texture"].data))).astype(int)
+    decoded = np.stack(list(read_video(run(clip(still=True), tmp_path, frames=9)["texture"].data))).astype(int)
     assert decoded[0].std() > 10
     assert np.abs(decoded - decoded[0]).max() <= 1
 

@@ -10,7 +10,7 @@ from imagecodecs import png_decode
 from PIL import Image
 
 from app.images.convert import GROUND
-from app.images.video.reader import read_film
+from app.images.video.reader import read_video
 from app.methods.model import Context, Film, Source
 from app.methods.output.films import crop_film, film_memory, texture_film
 from tests.images.clips import psnr
@@ -48,8 +48,8 @@ def test_a_texture_is_a_film_for_every_use_and_a_cube(tmp_path, channels):
     assert [picture.media_type for picture in made.values()] == types
     assert [(picture.frames, picture.rate) for picture in made.values()] == [(12, 24.0)] * 3 + [(1, 0.0)]
     assert [(picture.width, picture.height) for picture in made.values()][:3] == [(83, 61), (84, 62), (83, 61)]
-    assert (np.stack(list(read_film(made["texture"].data))) == film).all()
-    decoded = np.stack(list(read_film(made["texture-mp4"].data)))[:, :61, :83]
+    assert (np.stack(list(read_video(made["texture"].data))) == film).all()
+    decoded = np.stack(list(read_video(made["texture-mp4"].data)))[:, :61, :83]
     assert psnr(decoded, np.broadcast_to(film, decoded.shape)) >= 38
     with Image.open(made["preview"].data) as preview:
         assert (preview.size, preview.n_frames) == ((83, 61), 12)
@@ -61,7 +61,7 @@ def test_a_texture_is_a_film_for_every_use_and_a_cube(tmp_path, channels):
 def test_values_are_rounded_once_and_cut_off(tmp_path):
     values = np.array([-3.0, 0.4, 0.6, 127.2, 254.4, 300.0], np.float32).reshape(1, 1, 6, 1)
     film = next(texture(np.repeat(values, 2, 0), (2, 1, 6, 1), tmp_path))
-    assert next(read_film(film.data))[0, :, 0].tolist() == [0, 0, 1, 127, 254, 255]
+    assert next(read_video(film.data))[0, :, 0].tolist() == [0, 0, 1, 127, 254, 255]
 
 
 def test_a_maker_may_use_the_memory_of_a_frame_again(tmp_path):
@@ -73,7 +73,7 @@ def test_a_maker_may_use_the_memory_of_a_frame_again(tmp_path):
             kept[:] = frame
             yield kept
 
-    assert (np.stack(list(read_film(next(texture(frames(), film.shape, tmp_path)).data))) == film).all()
+    assert (np.stack(list(read_video(next(texture(frames(), film.shape, tmp_path)).data))) == film).all()
 
 
 def test_frames_are_asked_for_one_by_one_and_let_go(tmp_path):
@@ -112,7 +112,7 @@ def test_an_input_is_shown_exactly_as_it_was_cropped(tmp_path):
     assert list(made) == ["crop", "crop-mp4", "crop-cube"]
     assert {picture.kind for picture in made.values()} == {"view"}
     assert (made["crop"].frames, made["crop"].rate) == (9, 24000 / 1001)
-    assert (np.stack(list(read_film(made["crop"].data))) == film).all()
+    assert (np.stack(list(read_video(made["crop"].data))) == film).all()
     assert {stage for stage, _ in calls} == {"crop"}
     assert calls[0][1] == 0
     assert calls == sorted(calls)

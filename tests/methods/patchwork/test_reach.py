@@ -8,7 +8,7 @@ import pytest
 from imagecodecs import png_decode
 
 from app.errors import InvalidInputError
-from app.images.video.reader import read_film
+from app.images.video.reader import read_video
 from app.methods.model import Method, Picture, Size
 from app.methods.patchwork.limits import summed
 from app.methods.patchwork.patchwork import PATCHWORK
@@ -26,7 +26,7 @@ def texture(method: Method, scratch, **parameters) -> np.ndarray:
     made: Picture = next(run(method, sources_for(method, height=60, width=70), scratch=scratch, **parameters))
     if isinstance(made.data, bytes):
         return png_decode(made.data).astype(float)
-    return np.stack(list(read_film(made.data))).astype(float)
+    return np.stack(list(read_video(made.data))).astype(float)
 
 
 def test_every_method_that_has_a_sharpness_says_how_many_patches_count_in_the_same_words():
@@ -132,7 +132,7 @@ def test_pictures_of_one_pixel_and_clips_of_few_frames_can_be_summed(tmp_path):
             **MOSAIC,
         )
     )
-    assert len(list(read_film(film.data))) == 3
+    assert len(list(read_video(film.data))) == 3
 
 
 @pytest.mark.parametrize("method", JOINING, ids=lambda method: method.name)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from app.errors import InvalidInputError
-from app.images.video.reader import read_film
+from app.images.video.reader import read_video
 from app.methods.model import Film, Size
 from app.methods.output.films import film_memory
 from app.methods.patchwork.video_patchwork import VIDEO_PATCHWORK
@@ -27,7 +27,7 @@ def a_still_clip():
 def texture(source, scratch, **parameters):
     made = next(run(VIDEO_PATCHWORK, [source], scratch=scratch, **parameters))
     assert isinstance(made.data, Path)
-    return np.stack(list(read_film(made.data)))
+    return np.stack(list(read_video(made.data)))
 
 
 def test_only_the_fixed_arrangement_leaves_a_still_clip_still(tmp_path):

@@ -7,7 +7,7 @@ import pytest
 from imagecodecs import png_decode
 
 from app.errors import InvalidInputError
-from app.images.video.reader import read_film
+from app.images.video.reader import read_video
 from app.methods.model import Film, Size, Source
 from app.methods.patchwork.transfer import TRANSFER
 from app.methods.patchwork.video_transfer import VIDEO_TRANSFER
@@ -17,7 +17,7 @@ from tests.methods.runs import a_clip, a_crop, run
 def texture(sources, scratch, **parameters):
     made = next(run(VIDEO_TRANSFER, sources, scratch=scratch, **parameters))
     assert isinstance(made.data, Path)
-    return np.stack(list(read_film(made.data)))
+    return np.stack(list(read_video(made.data)))
 
 
 def halves():
@@ -57,7 +57,7 @@ def test_the_patterns_colours_are_rescaled_unless_that_is_switched_off(tmp_path)
             picture.name: picture
             for picture in run(VIDEO_TRANSFER, [halves(), pattern], scratch=tmp_path, candidates=0, rescale=rescale)
         }
-        film = np.stack(list(read_film(made["texture"].data))).astype(float)
+        film = np.stack(list(read_video(made["texture"].data))).astype(float)
         means[rescale] = film[:, :14].mean(), film[:, 26:].mean()
         compared = png_decode(made["pattern"].data)
         if rescale:

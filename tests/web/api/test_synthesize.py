@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from app.images.video.writers import write_film
+from app.images.video.writers import write_video
 
 URL = "/api/v1/synthesize"
 
@@ -170,7 +170,7 @@ def test_hanging_up_cancels_the_run(site, picture, until):
 def a_clip(tmp_path_factory):
     path = tmp_path_factory.mktemp("clips") / "clip.webm"
     film = np.random.default_rng(5).integers(0, 256, (10, 40, 48, 3), dtype=np.uint8)
-    write_film(film, path, "webm", count=len(film), rate=10.0)
+    write_video(film, path, "webm", count=len(film), rate=10.0)
     return path.read_bytes()
 
 
