@@ -10,9 +10,9 @@ import numpy as np
 
 from app.errors import BrokenFileError, TooLargeError, UnsupportedFormatError
 from app.images.colour import to_srgb
-from app.images.formats import animation, film, jpeg, png, tiff, webp
+from app.images.formats import animation, jpeg, png, tiff, video, webp
+from app.images.formats.clip import Clip, ClipLimits, Frame, rate_of
 from app.images.formats.containers import container_of
-from app.images.formats.moving import Clip, ClipLimits, Frame, rate_of
 from app.images.formats.still import Raw, is_opaque, upright, with_channels
 from app.images.png_writer import SIGNATURE, Pixels
 
@@ -139,7 +139,7 @@ def read(path: Path, limits: Limits) -> Decoded | Clip:
         raise BrokenFileError("The file is empty: choose it again and upload it once more.")
     with _telling():
         if container := container_of(data):
-            clip = film.decode(data, container, limits.pixels, limits.clip)
+            clip = video.decode(data, container, limits.pixels, limits.clip)
         elif animation.is_animation(data):
             clip = animation.decode(data, limits.pixels, limits.clip)
         else:

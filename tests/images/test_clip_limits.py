@@ -8,7 +8,7 @@ import pytest
 
 from app.errors import BrokenFileError, TooLargeError
 from app.images.decode import Decoded
-from app.images.formats.moving import ClipLimits, check_clip
+from app.images.formats.clip import ClipLimits, check_clip
 from tests.images.clips import Film, animation, chunk, lossless, moving, video
 
 Read = Callable[..., Decoded]

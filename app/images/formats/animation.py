@@ -16,7 +16,7 @@ from PIL import Image
 from app.errors import BrokenFileError, UnsupportedFormatError
 from app.images.colour import to_srgb
 from app.images.formats import png, webp
-from app.images.formats.moving import Clip, ClipLimits, Frame, check_clip
+from app.images.formats.clip import Clip, ClipLimits, Frame, check_clip
 from app.images.formats.still import DAMAGED, check_size, is_opaque, orientation, upright
 from app.images.png_writer import HEADER, SIGNATURE
 

@@ -1,4 +1,4 @@
-"""What every decoder gives back, and the checks they share."""
+"""Still pictures as their decoders return them, and the checks that all decoders share."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from app.images.decode import STILL, Decoded, Limits, read
-from app.images.formats.moving import Clip, rate_of
+from app.images.formats.clip import Clip, rate_of
 from app.images.png_writer import Pixels, PngWriter
 
 STRIP_ROWS, STRIP_PIXELS = 64, 1 << 16  # small strips: a crop is read by strips

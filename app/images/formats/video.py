@@ -24,8 +24,8 @@ from av.video.reformatter import ColorRange, Colorspace, ColorTrc, Interpolation
 from av.video.stream import VideoStream
 
 from app.errors import BrokenFileError, UnsupportedFormatError
+from app.images.formats.clip import USUAL_RATE, Clip, ClipLimits, Frame, check_clip, within
 from app.images.formats.containers import Container
-from app.images.formats.moving import USUAL_RATE, Clip, ClipLimits, Frame, check_clip, within
 from app.images.formats.still import check_size, is_opaque, upright
 
 NAME = "video"
@@ -82,17 +82,17 @@ def decode(data: bytes, container: Container, max_pixels: int, limits: ClipLimit
     """
     if not container.whole:
         raise BrokenFileError(DAMAGED)
-    film = _Film(data, container, max_pixels, limits)
-    channels = film.channels
+    track = _VideoTrack(data, container, max_pixels, limits)
+    channels = track.channels
     # Seldom worth another pass through the file: it has an alpha channel, or begins without colour.
-    if channels == 4 and all(is_opaque(frame.pixels[..., 3]) for frame in film.frames(4)):
+    if channels == 4 and all(is_opaque(frame.pixels[..., 3]) for frame in track.frames(4)):
         channels = 3
-    if channels == 1 and not film.is_grey():
+    if channels == 1 and not track.is_grey():
         channels = 3
-    return Clip(film.width, film.height, channels, container.media_type, film.frames(channels), film.rate)
+    return Clip(track.width, track.height, channels, container.media_type, track.frames(channels), track.rate)
 
 
-class _Film:
+class _VideoTrack:
     """A file's video track, which may be decoded several times; how its frames become pixels is told by the first."""
 
     def __init__(self, data: bytes, container: Container, max_pixels: int, limits: ClipLimits) -> None:

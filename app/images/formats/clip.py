@@ -1,4 +1,4 @@
-"""What every decoder of moving pictures gives back, and the limits they share."""
+"""Clips: what every decoder of a video or an animation returns, and the limits that they share."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
