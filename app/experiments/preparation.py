@@ -38,7 +38,7 @@ class Allowed:
     """What a texture may have and take: pixels (of a video, of one frame and of all) and a worker's bytes of memory."""
 
     pixels: int
-    film_pixels: int
+    video_pixels: int
     memory: int
 
     @classmethod
@@ -164,11 +164,11 @@ def _check_count(method: Method, given: int) -> None:
 def _check_pixels(method: Method, params: StillParams, limits: Allowed) -> None:
     pixels = (params.width or 0) * (params.height or 0)
     maker, allowed = "this service", limits.pixels
-    if isinstance(params, MovingParams) and pixels * (params.frames or 1) > limits.film_pixels:
+    if isinstance(params, MovingParams) and pixels * (params.frames or 1) > limits.video_pixels:
         raise TooLargeError(
             f"A video of {params.frames} frames of {params.width} × {params.height} has "
             f"{pixels * (params.frames or 1) / 1e6:.0f} megapixels; {maker} makes at most "
-            f"{limits.film_pixels / 1e6:.0f}: ask for fewer frames, or for a smaller width or height."
+            f"{limits.video_pixels / 1e6:.0f}: ask for fewer frames, or for a smaller width or height."
         )
     if method.most_pixels is not None and method.most_pixels < allowed:
         maker, allowed = f"the method {method.name}", method.most_pixels

@@ -45,9 +45,9 @@ class Limits:
     pixels: int = 50_000_000
     seconds: float = 20.0
     memory: int = 2048 * MEBIBYTE
-    film_frames: int = 600
-    film_seconds: float = 60.0
-    film_pixels: int = 1 << 28
+    video_frames: int = 600
+    video_seconds: float = 60.0
+    video_pixels: int = 1 << 28
 
     @classmethod
     def by(cls, settings: "Settings") -> "Limits":
@@ -57,15 +57,15 @@ class Limits:
             pixels=settings.max_upload_pixels,
             seconds=settings.decode_seconds,
             memory=settings.decode_memory,
-            film_frames=settings.max_film_frames,
-            film_seconds=settings.max_film_seconds,
-            film_pixels=settings.max_film_pixels,
+            video_frames=settings.max_film_frames,
+            video_seconds=settings.max_film_seconds,
+            video_pixels=settings.max_film_pixels,
         )
 
     @property
     def clip(self) -> ClipLimits:
         """Those of a video."""
-        return ClipLimits(self.film_frames, self.film_seconds, self.film_pixels)
+        return ClipLimits(self.video_frames, self.video_seconds, self.video_pixels)
 
 
 @dataclass(frozen=True)

@@ -133,9 +133,9 @@ def test_a_time_range_that_cannot_be_is_refused_where_it_stands(
 def test_a_video_of_too_many_pixels_or_bytes_is_refused_before_it_is_queued() -> None:
     """A frame may be as large as a picture; all of them together, and the memory they take, have limits too."""
     pixels = 64 * 48 * 30
-    assert filmed("video-rpn", "sea", allowed=replace(ALLOWED, film_pixels=pixels))
+    assert filmed("video-rpn", "sea", allowed=replace(ALLOWED, video_pixels=pixels))
     with pytest.raises(TooLargeError, match=r"30 frames of 64 × 48 .* ask for fewer frames"):
-        filmed("video-rpn", "sea", allowed=replace(ALLOWED, film_pixels=pixels - 1))
+        filmed("video-rpn", "sea", allowed=replace(ALLOWED, video_pixels=pixels - 1))
     needed = memory_of(filmed("video-rpn", "sea"), CLIPS.__getitem__)
     assert filmed("video-rpn", "sea", allowed=replace(ALLOWED, memory=needed))
     with pytest.raises(TooLargeError, match=r"would need about .* MB of memory.*shorter or smaller crop"):

@@ -86,9 +86,9 @@ def test_times_rounded_to_hundredths_make_no_repetition(read: Read, few_colours:
 
 def test_where_repetition_would_be_too_much_the_rate_is_the_average(read: Read, few_colours: Film) -> None:
     data = animation(few_colours, "PNG", [20, 20, 1000, 20, 20, 20, 20])
-    decoded = read(data, film_frames=55)
+    decoded = read(data, video_frames=55)
     assert (decoded.frames, decoded.rate) == (7, pytest.approx(7 / 1.12))
-    assert (read(data, film_frames=56).frames, read(data, film_frames=56).rate) == (56, 50)
+    assert (read(data, video_frames=56).frames, read(data, video_frames=56).rate) == (56, 50)
 
 
 @pytest.mark.parametrize("duration", [0, 10])

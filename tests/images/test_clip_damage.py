@@ -106,7 +106,7 @@ def test_damaged_videos_are_read_or_refused_and_harm_nothing(
     (tmp_path / "upload").write_bytes(content)
     try:
         stored = intake(
-            tmp_path / "upload", directory, Limits(pixels=1_000_000, film_pixels=1 << 22, seconds=10, memory=512 << 20)
+            tmp_path / "upload", directory, Limits(pixels=1_000_000, video_pixels=1 << 22, seconds=10, memory=512 << 20)
         )
     except AppError:
         assert not list(directory.iterdir())

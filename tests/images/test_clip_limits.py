@@ -52,16 +52,16 @@ def data(write: Write) -> bytes:
 
 
 def test_as_many_frames_as_allowed_are_read_and_one_more_is_not(read: Read, data: bytes) -> None:
-    assert read(data, film_frames=FRAMES).frames == FRAMES
+    assert read(data, video_frames=FRAMES).frames == FRAMES
     with pytest.raises(TooLargeError, match=f"at most {FRAMES - 1} frames.*rim it to its first {FRAMES - 1} frames"):
-        read(data, film_frames=FRAMES - 1)
+        read(data, video_frames=FRAMES - 1)
 
 
 def test_as_many_pixels_as_allowed_are_read_and_one_more_is_not(read: Read, data: bytes) -> None:
     pixels = FRAMES * HEIGHT * WIDTH
-    assert read(data, film_pixels=pixels).frames == FRAMES
+    assert read(data, video_pixels=pixels).frames == FRAMES
     with pytest.raises(TooLargeError, match=rf"of 48 × 32 pixels.*rim it to its first {FRAMES - 1} frames"):
-        read(data, film_pixels=pixels - 1)
+        read(data, video_pixels=pixels - 1)
 
 
 def test_a_frame_has_no_more_pixels_than_a_picture_may(read: Read, data: bytes) -> None:
@@ -72,9 +72,9 @@ def test_a_frame_has_no_more_pixels_than_a_picture_may(read: Read, data: bytes) 
 
 def test_a_video_plays_as_long_as_allowed_and_no_longer(read: Read, data: bytes) -> None:
     """What says nothing of its length is measured up to the start of its last frame."""
-    assert read(data, film_seconds=FRAMES / 25 + 0.001).frames == FRAMES
+    assert read(data, video_seconds=FRAMES / 25 + 0.001).frames == FRAMES
     with pytest.raises(TooLargeError, match=r"at most 12 frames|at most .* seconds"):
-        read(data, film_seconds=(FRAMES - 1) / 25 - 0.001)
+        read(data, video_seconds=(FRAMES - 1) / 25 - 0.001)
 
 
 def test_more_bytes_than_allowed_are_refused(read: Read, data: bytes) -> None:
@@ -87,7 +87,7 @@ def test_an_mp4_that_says_it_is_shorter_than_it_is_is_found_out(read: Read) -> N
     for name, at in ((b"mvhd", 20), (b"tkhd", 24), (b"mdhd", 20)):
         place = data.index(name) + at
         data[place : place + 4] = struct.pack(">I", 1)
-    for limits in ({"film_frames": FRAMES - 1}, {"film_pixels": 48 * 64 * (FRAMES - 1)}):
+    for limits in ({"video_frames": FRAMES - 1}, {"video_pixels": 48 * 64 * (FRAMES - 1)}):
         with pytest.raises((TooLargeError, BrokenFileError)):
             read(bytes(data), **limits)
 
@@ -157,7 +157,7 @@ def test_a_bomb_of_flat_frames_is_refused_by_its_pixels(read: Read) -> None:
     data = animation(flat, "PNG")
     assert len(data) < flat.size / 100
     with pytest.raises(TooLargeError, match="megapixels"):
-        read(data, film_pixels=1_000_000)
+        read(data, video_pixels=1_000_000)
 
 
 @pytest.mark.parametrize(
