@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.images.crop import Rectangle, measured
+from app.images.crop import Rectangle, crop_to_centre
 from app.images.read import read_crop
 from app.images.video.reader import first_frame
 from app.methods.model import Picture, Progress, Source
@@ -56,7 +56,7 @@ def _rounded(delta: float | None) -> float | None:
 
 def _pixels(picture: Picture, path: Path) -> NDArray[np.float32]:
     """The part of a texture that is measured."""
-    area = measured(Rectangle(0, 0, picture.width, picture.height))
+    area = crop_to_centre(Rectangle(0, 0, picture.width, picture.height))
     if picture.frames == 1:
         return read_crop(path, area)
     frame = first_frame(path)[area.y : area.y + area.height, area.x : area.x + area.width]

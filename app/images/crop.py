@@ -123,12 +123,12 @@ class Frames:
         return f"{self.first},{self.count}"
 
 
-def measured(area: Rectangle) -> Rectangle:
-    """The part of a rectangle that is measured: its centre, where it is larger than that.
+def crop_to_centre(area: Rectangle) -> Rectangle:
+    """Cut a rectangle down to the part the structure meter looks at: its centre, 1024 pixels wide and high at most.
 
     Examples
     --------
-    >>> measured(Rectangle(10, 10, 1124, 200))
+    >>> crop_to_centre(Rectangle(10, 10, 1124, 200))
     Rectangle(x=60, y=10, width=1024, height=200)
     """
     width, height = min(area.width, CENTRE), min(area.height, CENTRE)
