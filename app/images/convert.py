@@ -66,13 +66,13 @@ def convert(png: bytes | Path, file_format: Format, depth: Literal[8, 16] | None
     return _lossy(_image(array), file_format, JPEG_QUALITY if file_format == "jpeg" else WEBP_QUALITY), media_type
 
 
-def depth_of(path: Path) -> int:
+def read_depth(path: Path) -> int:
     """Bits per channel of a PNG file."""
     with path.open("rb") as file:
         return file.read(DEPTH_AT + 1)[DEPTH_AT]
 
 
-def rendition(png_path: Path, longest_side: int | None) -> tuple[bytes, str]:
+def make_rendition(png_path: Path, longest_side: int | None) -> tuple[bytes, str]:
     """Make a picture for a browser: 8 bits per channel, no side longer than ``longest_side`` pixels; never enlarged.
 
     Returns
@@ -90,7 +90,7 @@ def rendition(png_path: Path, longest_side: int | None) -> tuple[bytes, str]:
     return _lossy(image, "jpeg", SMALL_QUALITY), "image/jpeg"
 
 
-def flattened(picture: Pixels) -> Pixels:
+def flatten(picture: Pixels) -> Pixels:
     """Lay a picture of 8 bits, (H, W, C), on mid-grey where it has an alpha channel that is not opaque."""
     colour, alpha = with_channels(picture)
     if alpha is None:
@@ -98,7 +98,7 @@ def flattened(picture: Pixels) -> Pixels:
     return np.asarray(_on_grey(_image(picture)).convert("L" if colour.shape[2] == 1 else "RGB")).reshape(colour.shape)
 
 
-def thumbnails(crop: bytes | Path | Pixels, texture: bytes | Path | Pixels) -> tuple[bytes, bytes]:
+def make_thumbnails(crop: bytes | Path | Pixels, texture: bytes | Path | Pixels) -> tuple[bytes, bytes]:
     """Make WebP thumbnails of a crop and its texture at one scale, no side longer than 320 pixels; never enlarged."""
     images = [_image(_decoded(each)) for each in (crop, texture)]
     scale = min(1.0, THUMBNAIL / max(side for image in images for side in image.size))
@@ -106,7 +106,7 @@ def thumbnails(crop: bytes | Path | Pixels, texture: bytes | Path | Pixels) -> t
     return small[0], small[1]
 
 
-def pair(crop: bytes | Path | Pixels, texture: bytes | Path | Pixels) -> bytes:
+def make_link_preview(crop: bytes | Path | Pixels, texture: bytes | Path | Pixels) -> bytes:
     """Make a link preview: JPEG, 1200 × 630, crop and texture side by side at one scale on mid-grey.
 
     Small ones are enlarged, up to four times.

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageCms
 
 from app.errors import InvalidInputError
-from app.images.convert import Format, convert, pair, rendition, thumbnails
+from app.images.convert import Format, convert, make_link_preview, make_rendition, make_thumbnails
 from app.images.decode import Limits, decode
 from app.images.png_writer import encode_png
 
@@ -115,7 +115,7 @@ def test_a_rendition_fits_and_keeps_its_proportions(width: int, height: int, lon
     with tempfile.TemporaryDirectory() as directory:
         path = Path(directory) / "picture.png"
         path.write_bytes(encode_png(np.zeros((height, width), np.uint8)))
-        shown = opened(rendition(path, longest)[0]).size
+        shown = opened(make_rendition(path, longest)[0]).size
     scale = min(1, longest / max(width, height))
     assert max(shown) == min(longest, max(width, height))
     assert abs(shown[0] - width * scale) <= 1
@@ -132,13 +132,13 @@ def test_a_rendition_is_jpeg_or_png_if_transparent(tmp_path: Path, noise: Noise)
     ):
         (tmp_path / "picture.png").write_bytes(encode_png(pixels))
         for longest in (None, 20):
-            data, found = rendition(tmp_path / "picture.png", longest)
+            data, found = make_rendition(tmp_path / "picture.png", longest)
             assert found == media_type == Image.MIME[opened(data).format or ""]
 
 
 def test_a_rendition_looks_like_its_picture(tmp_path: Path, texture: NDArray[np.uint8]) -> None:
     (tmp_path / "picture.png").write_bytes(encode_png(texture))
-    shown = np.asarray(opened(rendition(tmp_path / "picture.png", 200)[0]).resize((400, 300)))
+    shown = np.asarray(opened(make_rendition(tmp_path / "picture.png", 200)[0]).resize((400, 300)))
     assert abs(shown.mean((0, 1)) - texture.mean((0, 1))).max() < 2
 
 
@@ -150,15 +150,15 @@ def test_no_byte_of_metadata_comes_out(tmp_path: Path) -> None:
         image.save(written, "png", exif=exif)
     (tmp_path / "picture.png").write_bytes(written.getvalue())
     assert b"48.8584" in written.getvalue()
-    assert b"48.8584" not in rendition(tmp_path / "picture.png", 128)[0]
+    assert b"48.8584" not in make_rendition(tmp_path / "picture.png", 128)[0]
     for file_format in ("jpeg", "webp", "tiff"):
         assert b"48.8584" not in convert(tmp_path / "picture.png", file_format)[0]  # type: ignore[arg-type]
 
 
 def test_thumbnails_have_one_scale(noise: Noise) -> None:
-    crop, texture = (opened(each) for each in thumbnails(noise(256, 128, 3), encode_png(noise(1024, 512, 3))))
+    crop, texture = (opened(each) for each in make_thumbnails(noise(256, 128, 3), encode_png(noise(1024, 512, 3))))
     assert (crop.size, texture.size) == ((40, 80), (160, 320))
-    small = [opened(each).size for each in thumbnails(noise(20, 30, 1), noise(40, 10, 3, dtype=np.uint16))]
+    small = [opened(each).size for each in make_thumbnails(noise(20, 30, 1), noise(40, 10, 3, dtype=np.uint16))]
     assert small == [(30, 20), (10, 40)]
 
 
@@ -168,7 +168,7 @@ def test_thumbnails_have_one_scale(noise: Noise) -> None:
 )
 def test_a_link_preview_has_its_size_and_both_pictures(crop: tuple[int, int], texture: tuple[int, int]) -> None:
     white, black = np.full((*crop, 3), 255, np.uint8), np.zeros(texture, np.uint8)
-    sheet = opened(pair(white, encode_png(black)))
+    sheet = opened(make_link_preview(white, encode_png(black)))
     assert (sheet.format, sheet.mode, sheet.size) == ("JPEG", "RGB", (1200, 630))
     grey = np.asarray(sheet.convert("L")).astype(int)
     assert abs(grey[:10] - 128).max() <= 3

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import tifffile
 
-from app.images.convert import convert, depth_of
+from app.images.convert import convert, read_depth
 from app.images.png_writer import encode_png
 from app.methods.model import Source
 from app.methods.registry import METHODS
@@ -107,4 +107,4 @@ def test_of_samples_of_different_depth_the_deeper_one_keeps_its_bits(first: int)
 def test_a_file_says_its_depth(tmp_path: Path) -> None:
     for kind, depth in ((np.uint8, 8), (np.uint16, 16)):
         (tmp_path / "picture.png").write_bytes(encode_png(np.ones((3, 4, 3), kind)))
-        assert depth_of(tmp_path / "picture.png") == depth
+        assert read_depth(tmp_path / "picture.png") == depth

@@ -9,7 +9,7 @@ from app.experiments.files.renditions import DERIVED, PNG, FilmFormat, Pictures,
 from app.experiments.model import Experiment, Output, deep_job, deep_name
 from app.experiments.ports import BlobStore, Executor, ExperimentStore
 from app.experiments.watching import Following
-from app.images.convert import Format, depth_of
+from app.images.convert import Format, read_depth
 from app.methods.effects import possible_output, refuse_deep
 from app.methods.registry import method as method_named
 
@@ -122,7 +122,7 @@ class Outputs:
 
     async def _deep(self, experiment: Experiment, output: Output) -> Output:
         """The same output at 16 bits; computed from the samples, in a job of its own, if it is not there yet."""
-        if not output.film and depth_of(self._blobs.path(output.digest)) == 16:
+        if not output.film and read_depth(self._blobs.path(output.digest)) == 16:
             return output
         refuse_deep(possible_output(method_named(experiment.method), output.name), experiment.depth)
         name, job = deep_name(output.name), deep_job(experiment.id, output.name)

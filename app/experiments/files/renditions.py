@@ -9,7 +9,17 @@ from app.errors import InvalidInputError, NotFoundError
 from app.experiments.files.cache import FileCache
 from app.experiments.model import Output, Sample, check_frame
 from app.experiments.ports import BlobStore
-from app.images.convert import PREVIEW, THUMBNAIL, Format, convert, depth_of, flattened, pair, rendition, thumbnails
+from app.images.convert import (
+    PREVIEW,
+    THUMBNAIL,
+    Format,
+    convert,
+    flatten,
+    make_link_preview,
+    make_rendition,
+    make_thumbnails,
+    read_depth,
+)
 from app.images.png_writer import encode_png
 from app.images.stored_video import read_frame
 from app.images.video.reader import first_frame
@@ -52,7 +62,7 @@ class Pictures:
         bound = next((step for step in SIZES if step >= size), SIZES[-1])
         media_type = PNG if sample.transparent else "image/jpeg"
         name = f"{_part(sample, frame)}-{bound}.{media_type.removeprefix('image/')}"
-        return self._cache.get(name, lambda: rendition(self._still(sample, frame), bound)[0]), media_type
+        return self._cache.get(name, lambda: make_rendition(self._still(sample, frame), bound)[0]), media_type
 
     def _still(self, sample: Sample, frame: int) -> Path:
         stored = self._blobs.path(sample.digest)
@@ -78,7 +88,7 @@ class Pictures:
 
         def write(path: Path) -> None:
             pictures = (read_frame(stored, frame, sample.width, sample.height) for frame in range(sample.frames))
-            write_video(map(flattened, pictures), path, file_format, count=sample.frames, rate=sample.rate)
+            write_video(map(flatten, pictures), path, file_format, count=sample.frames, rate=sample.rate)
 
         name = f"{sample.digest}-{sample.height}-{sample.rate:g}.{file_format}"
         return self._cache.file(name, write), f"video/{file_format}"
@@ -87,7 +97,7 @@ class Pictures:
         """A picture in this format, and its media type; where 8 bits are asked for, with no more than those."""
         stored = self._blobs.path(output.digest)
         media_type = f"image/{file_format}"
-        narrowed: Literal[8] | None = 8 if depth == 8 and depth_of(stored) == 16 else None
+        narrowed: Literal[8] | None = 8 if depth == 8 and read_depth(stored) == 16 else None
         if output.media_type == media_type and not narrowed:
             return stored, media_type
         name = f"{output.digest}{'-8' if narrowed else ''}.{file_format}"
@@ -107,11 +117,11 @@ class Pictures:
             return self._cache.get(f"{texture.digest}-{crop.digest}{part}", make)
 
         if name == PREVIEW_NAME:
-            path, media_type = cached(name, lambda: pair(*stored)), "image/jpeg"
+            path, media_type = cached(name, lambda: make_link_preview(*stored)), "image/jpeg"
         else:
 
             def both() -> bytes:
-                made = dict(zip(THUMBNAIL_NAMES, thumbnails(*stored), strict=True))
+                made = dict(zip(THUMBNAIL_NAMES, make_thumbnails(*stored), strict=True))
                 for each, data in made.items():
                     if each != name:
                         cached(each, lambda data=data: data)  # type: ignore[misc] # a browser asks for it next
