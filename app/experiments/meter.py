@@ -8,7 +8,7 @@ from app.experiments.model import Sample, check_frame
 from app.experiments.ports import BlobStore
 from app.images.crop import Rectangle, crop_to_centre
 from app.images.read import read_crop
-from app.images.stored_video import place
+from app.images.stored_video import locate_crop
 from app.synthesis.arrays import Real
 from app.synthesis.luminance import luminance
 from app.synthesis.structure import LEAST, Structure, structure_index, too_small
@@ -91,7 +91,7 @@ class Meter:
         """
         check_frame(sample, frame)
         whole = Rectangle(0, 0, sample.width, sample.height)
-        area = place(crop_to_centre((crop or whole).within(sample.width, sample.height)), frame, sample.height)
+        area = locate_crop(crop_to_centre((crop or whole).within(sample.width, sample.height)), frame, sample.height)
         small = sample.width * sample.height <= SMALL and not sample.transparent and not sample.moving
         found = self._measured(sample.digest, area, sigma, whole if small else None)
         return Index(None, None) if too_small(area.height, area.width) else Index(found.delta, found.z)

@@ -16,7 +16,7 @@ from app.experiments.environment import environment
 from app.experiments.model import DEEP, Experiment, Output, Status, deep_name
 from app.experiments.ports import BlobStore, ExperimentStore
 from app.images.read import read_crop
-from app.images.stored_video import place, read_frames
+from app.images.stored_video import locate_crop, read_frames
 from app.methods.model import Context, Film, Picture, Progress, Source
 from app.methods.registry import method as method_named
 
@@ -148,7 +148,7 @@ def _read(store: ExperimentStore, blobs: BlobStore, experiment: Experiment, prog
             film = Film(read_frames(path, item.crop, item.frames, sample.height), sample.rate)
             sources.append(Source(film.frames[0].astype(np.float32), peak, film))
         else:
-            pixels = read_crop(path, place(item.crop, item.frames.first, sample.height))
+            pixels = read_crop(path, locate_crop(item.crop, item.frames.first, sample.height))
             sources.append(Source(pixels, peak))
     return sources
 

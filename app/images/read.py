@@ -52,7 +52,7 @@ def read_crop(path: Path, rectangle: Rectangle) -> NDArray[np.float32]:
 
 def read_opaque(path: Path, rectangle: Rectangle) -> Pixels:
     """Cut a rectangle's colours out as the whole numbers that are stored; raises as `read_crop` does."""
-    colour, alpha = cut(path, rectangle)
+    colour, alpha = read_rectangle(path, rectangle)
     if alpha is not None and not is_opaque(alpha):
         raise InvalidInputError(
             f"The crop {rectangle} holds transparent pixels, which have no colour to learn from: "
@@ -64,11 +64,11 @@ def read_opaque(path: Path, rectangle: Rectangle) -> Pixels:
 
 def has_transparency(path: Path, rectangle: Rectangle) -> bool:
     """Whether a rectangle of a stored picture holds a pixel that is not opaque."""
-    alpha = cut(path, rectangle)[1]
+    alpha = read_rectangle(path, rectangle)[1]
     return alpha is not None and not is_opaque(alpha)
 
 
-def cut(path: Path, rectangle: Rectangle) -> tuple[Pixels, Pixels | None]:
+def read_rectangle(path: Path, rectangle: Rectangle) -> tuple[Pixels, Pixels | None]:
     """Cut a rectangle out of a stored picture, as it is: its colours (H, W, C) and its alpha (H, W), if it has any.
 
     Raises
