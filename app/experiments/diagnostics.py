@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from app.images.crop import Rectangle, crop_to_centre
 from app.images.read import read_crop
-from app.images.video.reader import first_frame
+from app.images.video.reader import read_first_frame
 from app.methods.model import Picture, Progress, Source
 from app.synthesis.structure import delta_of
 
@@ -59,5 +59,5 @@ def _pixels(picture: Picture, path: Path) -> NDArray[np.float32]:
     area = crop_to_centre(Rectangle(0, 0, picture.width, picture.height))
     if picture.frames == 1:
         return read_crop(path, area)
-    frame = first_frame(path)[area.y : area.y + area.height, area.x : area.x + area.width]
+    frame = read_first_frame(path)[area.y : area.y + area.height, area.x : area.x + area.width]
     return frame.astype(np.float32)

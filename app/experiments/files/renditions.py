@@ -22,7 +22,7 @@ from app.images.convert import (
 )
 from app.images.png_writer import encode_png
 from app.images.stored_video import read_frame
-from app.images.video.reader import first_frame
+from app.images.video.reader import read_first_frame
 from app.images.video.writers import write_video
 
 FilmFormat = Literal["mp4", "webm"]
@@ -140,7 +140,7 @@ class Pictures:
         stored = self._blobs.path(output.digest)
         if not output.film:
             return stored
-        return self._cache.get(f"{output.digest}-first.png", lambda: encode_png(first_frame(stored)))
+        return self._cache.get(f"{output.digest}-first.png", lambda: encode_png(read_first_frame(stored)))
 
 
 def _part(sample: Sample, frame: int) -> str:

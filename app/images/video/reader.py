@@ -7,7 +7,7 @@ import av
 import numpy as np
 from av.video.reformatter import ColorRange, Interpolation
 
-from app.images.video.writers import Frame, rows
+from app.images.video.writers import Frame, view_rows
 
 # Of chroma between its places; by itself the library repeats it, and is a level too dark.
 INTERPOLATED = Interpolation.BILINEAR | Interpolation.ACCURATE_RND | Interpolation.FULL_CHR_H_INT
@@ -18,11 +18,11 @@ def read_video(path: Path) -> Iterator[Frame]:
     with av.open(path) as container:
         for frame in container.decode(video=0):
             if frame.format.name == "yuv420p" and frame.color_range == ColorRange.JPEG:
-                yield rows(frame.planes[0])[: frame.height, : frame.width, None].copy()
+                yield view_rows(frame.planes[0])[: frame.height, : frame.width, None].copy()
             else:
                 yield frame.to_ndarray(format="rgb24", interpolation=INTERPOLATED).astype(np.uint8, copy=False)
 
 
-def first_frame(path: Path) -> Frame:
+def read_first_frame(path: Path) -> Frame:
     """The first frame, (H, W, C) uint8, decoded alone."""
     return next(read_video(path))

@@ -4,9 +4,9 @@ WebM is exact: VP9 without loss, of red, green and blue as they are (its profile
 colour spaces. A video of one channel becomes the luma, in full range, of a video without colour. Only a video of more
 than `MOST_LOSSLESS` bytes is coded with some loss, with chroma for every pixel. MP4 is for players that know nothing
 else: one chroma value for four pixels, which alone costs a texture of fine colours more than the coding does, and even
-sides: an odd video is continued by its last column or row, see `repeated`. (With chroma for every pixel H.264 codes odd
-sides too. Browsers play that on Linux, but for 64 × 1 in Firefox; the decoders of phones, of Safari and of Windows do
-not, and they are what the file is for. WebM has any size.)
+sides: an odd video is continued by its last column or row, see `name_repeated_edges`. (With chroma for every pixel
+H.264 codes odd sides too. Browsers play that on Linux, but for 64 × 1 in Firefox; the decoders of phones, of Safari and
+of Windows do not, and they are what the file is for. WebM has any size.)
 
 The same frames give the same bytes: an encoder has as many threads on every machine, and nothing that changes from run
 to run is written beside the pictures.
@@ -39,24 +39,24 @@ MUXERS: dict[Kind, dict[str, str]] = {
 }
 
 
-def exact_rate(rate: float) -> Fraction:
+def rate_as_fraction(rate: float) -> Fraction:
     """Frames a second as the fraction that was meant.
 
     Examples
     --------
-    >>> print(exact_rate(24.0), exact_rate(24000 / 1001), exact_rate(1 / 0.07))
+    >>> print(rate_as_fraction(24.0), rate_as_fraction(24000 / 1001), rate_as_fraction(1 / 0.07))
     24 24000/1001 100/7
     """
     return Fraction(rate).limit_denominator(LARGEST_DENOMINATOR)
 
 
-def repeated(width: int, height: int) -> str:
+def name_repeated_edges(width: int, height: int) -> str:
     """What the MP4 of a video of this size shows twice; nothing if its sides are even.
 
     Examples
     --------
-    >>> repeated(71, 53), repeated(71, 54), repeated(72, 53), repeated(72, 54)
-    ('last column and last row', 'last column', 'last row', '')
+    >>> [name_repeated_edges(width, height) for width in (71, 72) for height in (53, 54)]
+    ['last column and last row', 'last column', 'last row', '']
     """
     return " and ".join(name for name, side in (("last column", width), ("last row", height)) if side % 2)
 
@@ -98,7 +98,7 @@ class VideoWriter:
         self._coding = _coding(kind, channels, width * height * channels * count)
         self._taken, self._finished = 0, False
         self._container = av.open(path, "w", format=kind, options=MUXERS[kind])
-        self._stream = self._container.add_stream(self._coding.codec, exact_rate(rate) / self._every)
+        self._stream = self._container.add_stream(self._coding.codec, rate_as_fraction(rate) / self._every)
         self._stream.options = dict(self._coding.options)
         self._stream.width, self._stream.height, self._stream.pix_fmt = self.width, self.height, self._coding.pixels
         encoder = self._stream.codec_context
@@ -150,7 +150,7 @@ def write_video(frames: Iterable[Frame], path: Path, kind: Kind, *, count: int, 
         writer.close()
 
 
-def rows(plane: VideoPlane) -> Frame:
+def view_rows(plane: VideoPlane) -> Frame:
     """The bytes of a frame's plane by rows, which are longer than the picture is wide."""
     return np.frombuffer(memoryview(plane), np.uint8).reshape(-1, plane.line_size)
 
@@ -170,15 +170,15 @@ class _Coding(NamedTuple):
 def _of_rgb_planes(frame: Frame, width: int, height: int, coding: _Coding) -> av.VideoFrame:
     picture = av.VideoFrame(width, height, coding.pixels)
     for plane, channel in zip(picture.planes, RGB_PLANES, strict=True):
-        rows(plane)[:height, :width] = frame[:, :, channel]
+        view_rows(plane)[:height, :width] = frame[:, :, channel]
     return picture
 
 
 def _of_luma(frame: Frame, width: int, height: int, coding: _Coding) -> av.VideoFrame:
     picture = av.VideoFrame(width, height, coding.pixels)
-    rows(picture.planes[0])[:height, :width] = frame[:, :, 0]
+    view_rows(picture.planes[0])[:height, :width] = frame[:, :, 0]
     for plane in picture.planes[1:]:
-        rows(plane)[:] = NO_CHROMA
+        view_rows(plane)[:] = NO_CHROMA
     return picture
 
 

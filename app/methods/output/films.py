@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from app.images.png_writer import encode_png
 from app.images.video.cube import VideoCube
 from app.images.video.encoding import Encoding
-from app.images.video.writers import Frame, Kind, VideoWriter, repeated
+from app.images.video.writers import Frame, Kind, VideoWriter, name_repeated_edges
 from app.methods.model import Context, Picture, Source
 
 
@@ -116,7 +116,7 @@ def _written(
             encoding.finish(finishing)
         for file in files:
             writer = writers.pop(0)  # whoever takes the picture owns the file
-            twice = repeated(width, height) if file.kind == "mp4" else ""
+            twice = name_repeated_edges(width, height) if file.kind == "mp4" else ""
             yield Picture(
                 file.name,
                 f"{file.title}, its {twice} repeated" if twice else file.title,

@@ -16,7 +16,7 @@ from app.experiments.model import Experiment, Sample, Status
 from app.experiments.preparation import NewExperiment, NewInput
 from app.experiments.service import Service
 from app.images.crop import Frames, Rectangle
-from app.images.video.writers import repeated
+from app.images.video.writers import name_repeated_edges
 from app.methods.fields import fields
 from app.methods.model import Method
 from app.methods.params import MovingParams
@@ -165,8 +165,8 @@ def _padding(experiment: Experiment) -> str:
     verb = "are" if texture.width % 2 and texture.height % 2 else "is"
     return (
         f"The MP4 has {other.width} × {other.height} pixels: it can have even sides only, and its "
-        f"{repeated(texture.width, texture.height)} {verb} there twice. The WebM has the texture’s own size, and tiles "
-        "without a seam if the texture does."
+        f"{name_repeated_edges(texture.width, texture.height)} {verb} there twice. "
+        "The WebM has the texture’s own size, and tiles without a seam if the texture does."
     )
 
 

@@ -9,8 +9,8 @@ import pytest
 from PIL import Image
 
 from app.images.video import writers
-from app.images.video.reader import first_frame, read_video
-from app.images.video.writers import VideoWriter, repeated, write_video
+from app.images.video.reader import read_first_frame, read_video
+from app.images.video.writers import VideoWriter, name_repeated_edges, write_video
 from tests.images.clips import psnr
 from tests.images.video.memory import printed
 from tests.images.video.natural import natural_film
@@ -33,7 +33,7 @@ def test_webm_gives_the_very_frames_back(tmp_path, channels, height, width):
     film = natural_film(9, height, width, channels)
     path = written(tmp_path / "film", film, "webm")
     assert (read(path) == film).all()
-    assert (first_frame(path) == film[0]).all()
+    assert (read_first_frame(path) == film[0]).all()
 
 
 @pytest.mark.parametrize("channels", [1, 3])
@@ -87,7 +87,7 @@ def test_an_odd_mp4_repeats_its_last_row_and_column_and_says_so(tmp_path, height
     writer.finish()
     decoded = read(path)
     assert decoded.shape == (6, writer.height, writer.width, 3)
-    assert repeated(width, height) == twice
+    assert name_repeated_edges(width, height) == twice
     below, right = "row" in twice, "column" in twice
     assert (writer.height, writer.width) == (height + below, width + right)
     continued = np.pad(film, ((0, 0), (0, below), (0, right), (0, 0)), "edge")
