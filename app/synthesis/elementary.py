@@ -15,7 +15,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from app.synthesis.arrays import Complex, Real
+from .arrays import Complex, Real
 
 Double = NDArray[np.float64]
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from app.synthesis.arrays import Real
+from .arrays import Real
 
 WEIGHTS = (0.2126, 0.7152, 0.0722)  # of red, green and blue in sRGB (ITU-R BT.709)
 

@@ -6,7 +6,7 @@ from concurrent.futures import ThreadPoolExecutor, wait
 from types import TracebackType
 from typing import TypeVar
 
-from app.synthesis.arrays import Progress
+from .arrays import Progress
 
 T = TypeVar("T")
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from app.synthesis.arrays import Real
+from .arrays import Real
 
 Sink = Callable[[int, Iterable[Real]], None]
 Rows = Callable[[int, NDArray[np.unsignedinteger]], None]

@@ -25,10 +25,10 @@ from math import pi, sqrt
 import numpy as np
 import scipy.fft
 
-from app.synthesis.arrays import Complex, Real
-from app.synthesis.fourier.periodic import periodic_spectrum
-from app.synthesis.fourier.spot import centre
-from app.synthesis.luminance import luminance
+from .arrays import Complex, Real
+from .fourier.periodic import periodic_spectrum
+from .fourier.spot import centre
+from .luminance import luminance
 
 SIGMA = 2.0  # pixels; the scale at which δ tells best, see benchmarks/README.md
 LEAST = 32  # pixels of a side; at 32 δ tells three times out of four, see benchmarks/README.md, and below of nothing

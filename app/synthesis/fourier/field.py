@@ -16,16 +16,16 @@ from typing import Literal, TypedDict
 import numpy as np
 import scipy.fft
 
-from app.synthesis.arrays import Complex, Progress, Real
-from app.synthesis.fourier.periodic import SmoothSpectrum, periodic_planes
-from app.synthesis.fourier.spectral import Block, Draw, column_blocks, random_bits
-from app.synthesis.fourier.spot import Profile, centre, make_spot
-from app.synthesis.parallel import Team, row_blocks
-from app.synthesis.sinks import Sink, into
+from ..arrays import Complex, Progress, Real
+from ..parallel import Team, row_blocks
+from ..sinks import Sink, into
+from .periodic import SmoothSpectrum, periodic_planes
+from .spectral import Block, Draw, column_blocks, random_bits
+from .spot import Profile, centre, make_spot
 
 
 class NoiseOptions(TypedDict, total=False):
-    """Keyword arguments that RPN and ADSN share; `app.synthesis.gaussian.rpn.rpn` describes them."""
+    """Keyword arguments that RPN and ADSN share; `microtexture.gaussian.rpn.rpn` describes them."""
 
     seed: int
     phase: Literal["add", "replace"]

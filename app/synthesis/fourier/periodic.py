@@ -26,7 +26,7 @@ from functools import lru_cache
 import numpy as np
 import scipy.fft
 
-from app.synthesis.arrays import Complex, Real
+from ..arrays import Complex, Real
 
 PRODUCT = 1 << 16  # values of a matrix product of inner dimension 4, few enough for BLAS to stay in the calling thread
 

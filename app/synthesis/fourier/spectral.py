@@ -12,8 +12,8 @@ import numpy as np
 from numpy.random import SFC64, SeedSequence
 from numpy.typing import NDArray
 
-from app.synthesis.arrays import Complex, Real
-from app.synthesis.elementary import log10
+from ..arrays import Complex, Real
+from ..elementary import log10
 
 STATES = 1 << 16  # values that a 16-bit word takes, and so phases that are drawn from
 COLUMNS = 32  # width of a block of columns; part of what a seed means, since every block has its own stream
@@ -100,7 +100,7 @@ def half_spectrum(draw: Draw, height: int, width: int, seed: int) -> Complex:
     Parameters
     ----------
     draw : callable
-        `app.synthesis.gaussian.rpn.random_phase` or `app.synthesis.gaussian.adsn.white_noise`.
+        `microtexture.gaussian.rpn.random_phase` or `microtexture.gaussian.adsn.white_noise`.
     height, width : int
         Size of the image in pixels.
     seed : int

@@ -25,8 +25,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from app.synthesis.arrays import Real
-from app.synthesis.elementary import exp
+from ..arrays import Real
+from ..elementary import exp
 
 Profile = Literal["bump", "gaussian"]
 

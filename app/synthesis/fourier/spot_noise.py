@@ -16,9 +16,9 @@ from collections.abc import Sequence
 import numpy as np
 import scipy.fft
 
-from app.synthesis.arrays import Complex, Progress, Real
-from app.synthesis.fourier.periodic import periodic_planes
-from app.synthesis.fourier.spot import Profile, Spot, centre, make_spot
+from ..arrays import Complex, Progress, Real
+from .periodic import periodic_planes
+from .spot import Profile, Spot, centre, make_spot
 
 
 def sample_spot(
@@ -33,7 +33,7 @@ def sample_spot(
     height, width : int
         Size of the texture.
     alpha, window
-        See `app.synthesis.fourier.spot.window`.
+        See `microtexture.fourier.spot.window`.
     threads : int
 
     Returns

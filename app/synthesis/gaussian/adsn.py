@@ -21,10 +21,10 @@ import numpy as np
 from numpy.random import SFC64
 from scipy.special import erfcinv
 
-from app.synthesis.arrays import Complex, Progress, Real
-from app.synthesis.elementary import log, log1p
-from app.synthesis.fourier.field import Noise, NoiseField, NoiseOptions
-from app.synthesis.fourier.spectral import (
+from ..arrays import Complex, Progress, Real
+from ..elementary import log, log1p
+from ..fourier.field import Noise, NoiseField, NoiseOptions
+from ..fourier.spectral import (
     STATES,
     Block,
     half_spectrum,
@@ -33,10 +33,10 @@ from app.synthesis.fourier.spectral import (
     symmetric_columns,
     symmetrise,
 )
-from app.synthesis.fourier.spot import Spot
-from app.synthesis.fourier.spot_noise import convolve
-from app.synthesis.gaussian.rpn import random_phase
-from app.synthesis.parallel import Team
+from ..fourier.spot import Spot
+from ..fourier.spot_noise import convolve
+from ..parallel import Team
+from .rpn import random_phase
 
 
 @cache
@@ -52,7 +52,7 @@ def _rayleigh_table() -> Real:
 def white_noise(height: int, width: int, block: Block, source: SFC64) -> Complex:
     """Draw ``R exp(iθ)`` of a Gaussian white noise on one block of columns of the half spectrum (section 4).
 
-    θ is that of `app.synthesis.gaussian.rpn.random_phase` from the same bits; R is independent of it, Rayleigh with
+    θ is that of `microtexture.gaussian.rpn.random_phase` from the same bits; R is independent of it, Rayleigh with
     E R² = 1, and |N(0, 1)| where k = −k. It is the transform of a white noise of variance 1 / (H W), without its mean.
 
     Parameters
@@ -98,7 +98,7 @@ def adsn(
     height, width : int, optional
         Size of the texture in pixels; default: the sample's.
     threads, progress, **options
-        Those of `app.synthesis.gaussian.rpn.rpn`: ``seed``, ``phase``, ``alpha``, ``window``, ``periodic`` and
+        Those of `microtexture.gaussian.rpn.rpn`: ``seed``, ``phase``, ``alpha``, ``window``, ``periodic`` and
         ``add_smooth``, with the same meaning and the same defaults.
 
     Returns
@@ -133,7 +133,7 @@ def adsn_field(
 ) -> NoiseField:
     """Prepare the ADSN of an image, whose rows are then handed to a sink.
 
-    Parameters, result and errors are those of `app.synthesis.gaussian.rpn.rpn_field`.
+    Parameters, result and errors are those of `microtexture.gaussian.rpn.rpn_field`.
     """
     return NoiseField(h, Noise(white_noise, height or h.shape[0], width or h.shape[1], **options), team, progress)
 

@@ -12,7 +12,7 @@ one without phase:
 light and dark, which flutters from one to the next. Of grey there is nothing to weigh: t̂ = |p̂| is not averaged.)
 
 Column j is the spot of a white noise Wⱼ of its own. Whole, that changes nothing: w is 1, and t̂ Ŵ is p̂ times one white
-noise. But a cut to Ω leaves of a single colour spot, `app.synthesis.gaussian.texton`, the luminance, whose
+noise. But a cut to Ω leaves of a single colour spot, `microtexture.gaussian.texton`, the luminance, whose
 phase was taken off, and little of the colours, which do not gather at the origin; leaves turn sepia. Here everything
 gathers there. What is cut off is variance, of the differences of channels more than of what they share, and one matrix
 for the whole kernel gives it back:
@@ -39,10 +39,10 @@ import scipy.fft
 from numpy.typing import NDArray
 from scipy.fft import next_fast_len
 
-from app.synthesis.arrays import Complex, Progress, Real
-from app.synthesis.fourier.periodic import periodic_planes
-from app.synthesis.fourier.spot import Spot
-from app.synthesis.pyramid.colour_space import ColourSpace
+from ..arrays import Complex, Progress, Real
+from ..fourier.periodic import periodic_planes
+from ..fourier.spot import Spot
+from ..pyramid.colour_space import ColourSpace
 
 Matrix = NDArray[np.float64]
 

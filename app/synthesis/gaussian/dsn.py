@@ -20,10 +20,10 @@ from numpy.random import SFC64, Generator, SeedSequence
 from numpy.typing import NDArray
 from scipy.special import pdtr
 
-from app.synthesis.arrays import Progress, Real
-from app.synthesis.fourier.spectral import STATES
-from app.synthesis.fourier.spot import Spot
-from app.synthesis.fourier.spot_noise import convolve
+from ..arrays import Progress, Real
+from ..fourier.spectral import STATES
+from ..fourier.spot import Spot
+from ..fourier.spot_noise import convolve
 
 Counts = NDArray[np.int64]
 
@@ -104,7 +104,7 @@ def dsn(spot: Spot, order: int, *, seed: int = 0, threads: int = 1, progress: Pr
     Parameters
     ----------
     spot : Spot
-        Of the texture's size: `app.synthesis.fourier.spot_noise.sample_spot`, or `standard_spot`.
+        Of the texture's size: `microtexture.fourier.spot_noise.sample_spot`, or `standard_spot`.
     order : int
         n, at least 1.
     seed : int

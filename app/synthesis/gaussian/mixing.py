@@ -31,13 +31,13 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import scipy.fft
 
-from app.synthesis.arrays import Complex, Progress, Real
-from app.synthesis.fourier.field import Noise, NoiseField
-from app.synthesis.fourier.spectral import column_blocks
-from app.synthesis.fourier.spot import Profile
-from app.synthesis.gaussian.adsn import white_noise
-from app.synthesis.parallel import Team, row_blocks
-from app.synthesis.sinks import Sink, into
+from ..arrays import Complex, Progress, Real
+from ..fourier.field import Noise, NoiseField
+from ..fourier.spectral import column_blocks
+from ..fourier.spot import Profile
+from ..parallel import Team, row_blocks
+from ..sinks import Sink, into
+from .adsn import white_noise
 
 SEARCH, SWEEPS = 5, 12  # over the phases: from every start, and then from the best one
 TINY = np.complex64(1e-30)  # far below any product of spectra but 0, and gives that a phase
@@ -203,9 +203,9 @@ def mix(
     height, width : int, optional
         Size of the texture; default: the first sample's.
     seed : int
-        Not negative. The noise is that of `app.synthesis.gaussian.adsn.adsn` at the same seed.
+        Not negative. The noise is that of `microtexture.gaussian.adsn.adsn` at the same seed.
     alpha, window
-        The spot's transition, see `app.synthesis.fourier.spot.window`.
+        The spot's transition, see `microtexture.fourier.spot.window`.
     threads : int
         The result does not depend on it.
     progress : callable ``(stage, part)``, optional

@@ -16,8 +16,8 @@ import math
 import numpy as np
 import scipy.fft
 
-from app.synthesis.arrays import Complex, Progress, Real
-from app.synthesis.elementary import angle
+from ..arrays import Complex, Progress, Real
+from ..elementary import angle
 
 ROUNDING = 1e-6  # of an image's ℓ² norm: what coefficients of single precision may be off by
 

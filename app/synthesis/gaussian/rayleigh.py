@@ -13,11 +13,11 @@ Galerne, Gousseau, Morel, "Random Phase Textures: Theory and Synthesis", IEEE TI
 import numpy as np
 import scipy.fft
 
-from app.synthesis.arrays import Progress, Real
-from app.synthesis.fourier.periodic import SmoothSpectrum
-from app.synthesis.fourier.spectral import half_spectrum
-from app.synthesis.fourier.spot import centre
-from app.synthesis.gaussian.adsn import white_noise
+from ..arrays import Progress, Real
+from ..fourier.periodic import SmoothSpectrum
+from ..fourier.spectral import half_spectrum
+from ..fourier.spot import centre
+from .adsn import white_noise
 
 
 def rayleigh(

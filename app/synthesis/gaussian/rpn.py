@@ -19,9 +19,9 @@ from typing import Literal, Unpack
 import numpy as np
 from numpy.random import SFC64
 
-from app.synthesis.arrays import Complex, Progress, Real
-from app.synthesis.fourier.field import Noise, NoiseField, NoiseOptions
-from app.synthesis.fourier.spectral import (
+from ..arrays import Complex, Progress, Real
+from ..fourier.field import Noise, NoiseField, NoiseOptions
+from ..fourier.spectral import (
     STATES,
     Block,
     random_words,
@@ -29,8 +29,8 @@ from app.synthesis.fourier.spectral import (
     symmetric_columns,
     symmetrise,
 )
-from app.synthesis.fourier.spot import Profile
-from app.synthesis.parallel import Team
+from ..fourier.spot import Profile
+from ..parallel import Team
 
 
 @cache
@@ -52,7 +52,7 @@ def random_phase(height: int, width: int, block: Block, source: SFC64) -> Comple
     height, width : int
         Size of the image in pixels.
     block : tuple of int
-        One of `app.synthesis.fourier.spectral.column_blocks`.
+        One of `microtexture.fourier.spectral.column_blocks`.
     source : SFC64
         Random bits, 16 for each coefficient.
 
@@ -100,14 +100,14 @@ def rpn(
         The sample; any number of channels, any range, finite.
     height, width : int, optional
         Size of the texture in pixels; default: the sample's. Along a longer axis the spot is extended (see
-        `app.synthesis.fourier.spot`), along a shorter one the sample's centre is taken.
+        `microtexture.fourier.spot`), along a shorter one the sample's centre is taken.
     seed : int
         Not negative; the result depends on nothing else.
     phase : {"add", "replace"}
         Add the random phase to every channel's own, or replace them all by it: the literature's "wrong RPN", which
         makes false colours.
     alpha : float
-        Width of the spot's transition as a part of the sample's side, 0–0.5; see `app.synthesis.fourier.spot.window`.
+        Width of the spot's transition as a part of the sample's side, 0–0.5; see `microtexture.fourier.spot.window`.
     window : {"bump", "gaussian"}
         Profile of the transition: of the IPOL article, or of the TIP article.
     periodic : bool

@@ -23,13 +23,13 @@ import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
-from app.synthesis.arrays import Complex, Progress, Real
-from app.synthesis.fourier.periodic import periodic_planes
-from app.synthesis.fourier.spectral import Block, column_blocks, random_bits
-from app.synthesis.fourier.spot import Spot
-from app.synthesis.fourier.spot_noise import convolve, sample_spot, transform
-from app.synthesis.gaussian.adsn import white_noise
-from app.synthesis.luminance import luminance
+from ..arrays import Complex, Progress, Real
+from ..fourier.periodic import periodic_planes
+from ..fourier.spectral import Block, column_blocks, random_bits
+from ..fourier.spot import Spot
+from ..fourier.spot_noise import convolve, sample_spot, transform
+from ..luminance import luminance
+from .adsn import white_noise
 
 
 def _sign(spectrum: Complex) -> Complex:
@@ -114,7 +114,7 @@ def extend_texton(t: Real, mean: NDArray[np.float64], height: int, width: int) -
 
     Its noise has the covariance of colours (1/M₂N₂) Σ (t̃ − m)(t̃ − m)ᵀ, the sum over an image of M₂ × N₂ pixels, and
     that is then the sample's, (1/M₁N₁) Σ (t − m)(t − m)ᵀ. No more can be cut off than that: see
-    `app.synthesis.gaussian.cut_texton`.
+    `microtexture.gaussian.cut_texton`.
 
     Parameters
     ----------
@@ -139,7 +139,7 @@ def texton_noise(
     """ADSN of a sample's texton, its luminance at the phase of the sample's own ADSN.
 
     At every frequency, with ℓ the luminance of the sample's extended spot, aⱼ that of the texton's spots, R the white
-    noise of `app.synthesis.gaussian.adsn` at this seed and V white noises of their own, spot j is given
+    noise of `microtexture.gaussian.adsn` at this seed and V white noises of their own, spot j is given
 
         Ŵⱼ = vⱼ R + V̂ⱼ − vⱼ Σᵢ v̄ᵢ V̂ᵢ,   vⱼ = (ℓ / |ℓ|) āⱼ / ‖a‖.
 
@@ -152,7 +152,7 @@ def texton_noise(
     h : ndarray of float32, shape (H, W, C)
         The sample.
     spots : sequence of Spot
-        `extend_texton` of the texton of h, alone, or the spots of `app.synthesis.gaussian.cut_texton.cut_texton`.
+        `extend_texton` of the texton of h, alone, or the spots of `microtexture.gaussian.cut_texton.cut_texton`.
     seed : int
         Not negative.
     threads : int

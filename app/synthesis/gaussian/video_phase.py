@@ -9,9 +9,9 @@ together, each pair from a stream of its own.
 import numpy as np
 from numpy.random import SFC64, SeedSequence
 
-from app.synthesis.arrays import Complex
-from app.synthesis.fourier.spectral import STATES, symmetrise
-from app.synthesis.gaussian.rpn import phase_table
+from ..arrays import Complex
+from ..fourier.spectral import STATES, symmetrise
+from .rpn import phase_table
 
 
 def pair(row: int, height: int) -> list[int]:
@@ -35,7 +35,7 @@ def rows_of_phase(shape: tuple[int, int, int], row: int, flat: Complex, seed: in
     row : int
         k₁, 0 to height // 2.
     flat : ndarray of complex64, shape (height, width // 2 + 1)
-        The phase at frequency 0 in time: that of `app.synthesis.gaussian.rpn` at this seed, so that a video
+        The phase at frequency 0 in time: that of `microtexture.gaussian.rpn` at this seed, so that a video
         that stands still has the phase of its RPN.
     seed : int
 

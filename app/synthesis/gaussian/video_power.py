@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from app.synthesis.arrays import Complex, Real
+from ..arrays import Complex, Real
 
 BAND = 2  # rows of the spectrum on either side of k₁ = 0 that its slice through time is the mean of
 

@@ -13,7 +13,7 @@ That leaves k = 0, and with it the average frame and all that stands still, as i
 pixels of the bundled sky and smoke the mean square difference between frames is 9.1 and 3.2 times the clip's own with
 the jump, 0.9 and 0.9 without; that of second differences 102 and 49 against 1.2 and 1.3.)
 
-A larger or longer film is made from the extended spot, see `app.synthesis.fourier.spot`; what does not change with
+A larger or longer film is made from the extended spot, see `microtexture.fourier.spot`; what does not change with
 time is kept out of the window along time, so that what stands still does so for as long. One factor at the end gives
 the whole film the clip's variance, the mean over the channels.
 
@@ -31,15 +31,15 @@ import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
-from app.synthesis.arrays import Complex, Progress, Real
-from app.synthesis.fourier.periodic import SmoothSpectrum
-from app.synthesis.fourier.spectral import half_spectrum
-from app.synthesis.fourier.spot import Profile, Spot, fade, window
-from app.synthesis.fourier.spot_noise import transform
-from app.synthesis.gaussian.rpn import random_phase
-from app.synthesis.gaussian.video_phase import pair, rows_of_phase
-from app.synthesis.gaussian.video_power import FilmPower
-from app.synthesis.parallel import Team
+from ..arrays import Complex, Progress, Real
+from ..fourier.periodic import SmoothSpectrum
+from ..fourier.spectral import half_spectrum
+from ..fourier.spot import Profile, Spot, fade, window
+from ..fourier.spot_noise import transform
+from ..parallel import Team
+from .rpn import random_phase
+from .video_phase import pair, rows_of_phase
+from .video_power import FilmPower
 
 Film = NDArray[Any]
 
@@ -72,7 +72,7 @@ class MovingField:
         Frames, height and width of the texture.
     seed : int
     alpha, profile
-        The spot's transition along an axis that is extended, see `app.synthesis.fourier.spot.window`.
+        The spot's transition along an axis that is extended, see `microtexture.fourier.spot.window`.
     team : Team
     progress : callable ``(stage, part)``
         Called between pieces of work with the part of all of it that is done; may raise.
@@ -237,11 +237,11 @@ def video_rpn(
         Any number of channels, any range, finite.
     frames, height, width : int, optional
         Of the texture; default: the film's. Along a longer axis the spot is extended (see
-        `app.synthesis.fourier.spot`), along a shorter one the film's centre is taken.
+        `microtexture.fourier.spot`), along a shorter one the film's centre is taken.
     seed : int
         Not negative; the result depends on nothing else.
     alpha, window
-        The spot's transition, see `app.synthesis.fourier.spot.window`.
+        The spot's transition, see `microtexture.fourier.spot.window`.
     threads : int
         The result does not depend on it.
     progress : callable ``(stage, part)``, optional

@@ -25,8 +25,8 @@ from numpy.random import SFC64, Generator, SeedSequence
 from numpy.typing import NDArray
 from scipy import fft
 
-from app.synthesis.arrays import Real
-from app.synthesis.parallel import Work
+from ..arrays import Real
+from ..parallel import Work
 
 STEPS = 16 * 255  # of the values' range
 BLOCK = 16  # patches that share random numbers, and a task

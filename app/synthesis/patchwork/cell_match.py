@@ -12,10 +12,10 @@ Harrison, "Patchwork texture synthesis", technical report, Monash University, 20
 
 import numpy as np
 
-from app.synthesis.arrays import Ints, Real
-from app.synthesis.parallel import Work
-from app.synthesis.patchwork.best_places import Matches, Patches, best_matches
-from app.synthesis.patchwork.cells import Cells
+from ..arrays import Ints, Real
+from ..parallel import Work
+from .best_places import Matches, Patches, best_matches
+from .cells import Cells
 
 HALF = 0.75  # of a square's side, in spacings
 
@@ -28,7 +28,7 @@ def match_cells(
     Parameters
     ----------
     texture : ndarray of float32, shape (H', W', C)
-        At least `app.synthesis.patchwork.cells.least_sample` pixels a side.
+        At least `microtexture.patchwork.cells.least_sample` pixels a side.
     pattern : ndarray of float32, shape (H, W, C)
         Of the size of the cells' plane; its values are in the texture's unit.
     cells : Cells

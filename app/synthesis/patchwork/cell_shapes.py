@@ -1,7 +1,7 @@
 """How far the cells of a jittered grid reach: found out on a lattice of points, for all cells at once.
 
 The part that a cell has of a pixel x is w_i(x) / sqrt(Σ_j w_j(x)²), with the weights of
-`app.synthesis.patchwork.cells`. Where it is at least some share s, d(x, p_i) ≤ T_s(x) with a distance T_s that depends
+`microtexture.patchwork.cells`. Where it is at least some share s, d(x, p_i) ≤ T_s(x) with a distance T_s that depends
 on x alone; so a cell's box is found by comparing distances.
 """
 
@@ -13,8 +13,8 @@ from math import ceil, hypot
 import numpy as np
 from numpy.typing import NDArray
 
-from app.synthesis.arrays import Ints, Real
-from app.synthesis.elementary import power
+from ..arrays import Ints, Real
+from ..elementary import power
 
 REACH = 3.0  # spacings after which a weight is 0
 JITTER = 0.75  # of its square's side, in which a centre lies

@@ -9,7 +9,7 @@ is a slice of one table. The table holds logarithms: only their differences to t
 f over- or underflows, and at a centre the cell alone is left.
 
 With R = 3 the shoulder takes less from the weights than an 8-bit value shows where f ≥ 6. For smaller f it is a model
-of its own: `app.synthesis.patchwork.unbounded_cells` has weights without end.
+of its own: `microtexture.patchwork.unbounded_cells` has weights without end.
 
 References
 ----------
@@ -24,8 +24,8 @@ from typing import ClassVar, NamedTuple
 import numpy as np
 from numpy.random import SFC64, Generator, SeedSequence
 
-from app.synthesis.arrays import Ints, Real
-from app.synthesis.patchwork.cell_shapes import Axis, extents, log_weight, reach
+from ..arrays import Ints, Real
+from .cell_shapes import Axis, extents, log_weight, reach
 
 LEFT_OUT = 1 / 512  # of a pixel: a part that is smaller changes an 8-bit value by less than a half
 LOG_LEFT_OUT = np.float32(log(LEFT_OUT))

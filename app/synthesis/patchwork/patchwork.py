@@ -16,11 +16,11 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from app.synthesis.arrays import Progress, Real
-from app.synthesis.parallel import Team, Work, row_blocks
-from app.synthesis.patchwork.cells import Cells, Part, Window, jittered_cells
-from app.synthesis.patchwork.unbounded_cells import Reach, joined_cells
-from app.synthesis.sinks import into
+from ..arrays import Progress, Real
+from ..parallel import Team, Work, row_blocks
+from ..sinks import into
+from .cells import Cells, Part, Window, jittered_cells
+from .unbounded_cells import Reach, joined_cells
 
 BAND, TILE = 192, 1024  # rows and columns that are joined at once: with smaller ones calls take longer than sums
 SMALL_BAND, SMALL_TILE = 64, 512  # where all cells count: what is added to so often stays in the cache
@@ -174,7 +174,7 @@ def patchwork(
     Parameters
     ----------
     h : ndarray of float32, shape (H, W, C)
-        The sample, at least `app.synthesis.patchwork.cells.least_sample` pixels each way.
+        The sample, at least `microtexture.patchwork.cells.least_sample` pixels each way.
     height, width : int
         Of the texture.
     grid : int
@@ -183,7 +183,7 @@ def patchwork(
         f, 1–40.
     blend : {"deviation", "feather", "sharp"}
     reach : {"all", "near"}
-        Whether all cells count at a pixel, or the weights end; see `app.synthesis.patchwork.unbounded_cells`.
+        Whether all cells count at a pixel, or the weights end; see `microtexture.patchwork.unbounded_cells`.
     tileable : bool
         On a torus.
     seed : int

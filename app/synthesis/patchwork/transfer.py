@@ -25,13 +25,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from app.synthesis.arrays import Real
-from app.synthesis.parallel import Work, row_blocks
-from app.synthesis.patchwork.best_places import Matches
-from app.synthesis.patchwork.cell_match import match_cells
-from app.synthesis.patchwork.cells import Cells, Window
-from app.synthesis.patchwork.patchwork import Patches
-from app.synthesis.patchwork.unbounded_cells import Reach, joined_cells
+from ..arrays import Real
+from ..parallel import Work, row_blocks
+from .best_places import Matches
+from .cell_match import match_cells
+from .cells import Cells, Window
+from .patchwork import Patches
+from .unbounded_cells import Reach, joined_cells
 
 BAND, SMALL_BAND, TILE = 128, 64, 512  # rows, rows where all cells count, and columns that are joined at once
 TINY = 1e-30  # instead of 0, for a cell whose box holds no pixel that it has a part of
@@ -94,14 +94,14 @@ def transfer(
     Parameters
     ----------
     texture : ndarray of float32, shape (H', W', C)
-        At least `app.synthesis.patchwork.cells.least_sample` pixels a side; values of [0, ``peak``].
+        At least `microtexture.patchwork.cells.least_sample` pixels a side; values of [0, ``peak``].
     pattern : ndarray of float32, shape (H, W, C)
         Of the size of the cells' plane; its values are in the texture's unit.
     cells : Cells
         Of a plane, not of a torus, with weights that end.
     reach : {"all", "near"}
         Whether all of them count at a pixel or the weights end, as for the search; see
-        `app.synthesis.patchwork.unbounded_cells`.
+        `microtexture.patchwork.unbounded_cells`.
     peak : float
     candidates : int
         Among how many places of the texture the best is chosen for each cell, at random; 0: among all.

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from app.synthesis.arrays import Ints, Real
+from ..arrays import Ints, Real
 
 
 def longest_interval(clip: int, frames: int, loop: bool) -> int:

@@ -4,7 +4,7 @@
 
 Whether far cells count depends on f. Their patches are independent, so they add √(Σ w²) over them to what nearer ones
 add: over the cells beyond the distance r that is as much as r^(1 − f). From f = 6 on, nothing of it is seen beyond
-three spacings, where the weights of `app.synthesis.patchwork.cells` end. For f ≤ 1 it does not even converge, and the
+three spacings, where the weights of `microtexture.patchwork.cells` end. For f ≤ 1 it does not even converge, and the
 texture depends on how many cells there are. So it must be said which they are:
 
 - on a torus the n cells of the plane, each once, d being the distance on the torus: at its nearest turn. Where a cell
@@ -31,10 +31,10 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from app.synthesis.arrays import Ints, Real
-from app.synthesis.patchwork.cells import Cells, Part, Window
+from ..arrays import Ints, Real
+from .cells import Cells, Part, Window
 
-ENDS = 6.0  # f from which on no cell is seen beyond where the weights of `app.synthesis.patchwork.cells` end
+ENDS = 6.0  # f from which on no cell is seen beyond where the weights of `microtexture.patchwork.cells` end
 LEFT_OUT = 1 / 100  # of the sample's deviation: half a level of 50
 LEAST = 6.0  # spacings up to which all cells count, so that single values are right too
 SMALL = 2.0  # spacings

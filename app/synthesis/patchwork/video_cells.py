@@ -8,9 +8,9 @@ Harrison, "Patchwork texture synthesis", 2002, Figure 5.
 import numpy as np
 from numpy.typing import NDArray
 
-from app.synthesis.arrays import Ints, Real
-from app.synthesis.patchwork.cells import Cells, Window
-from app.synthesis.patchwork.transitions import Transitions
+from ..arrays import Ints, Real
+from .cells import Cells, Window
+from .transitions import Transitions
 
 
 def source_colours(places: NDArray[np.float64] | Ints, sides: tuple[int, int, int]) -> Real:

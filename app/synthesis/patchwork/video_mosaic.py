@@ -21,9 +21,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from app.synthesis.arrays import Ints, Real
-from app.synthesis.patchwork.cells import Window
-from app.synthesis.patchwork.unbounded_cells import ENDS, Reach
+from ..arrays import Ints, Real
+from .cells import Window
+from .unbounded_cells import ENDS, Reach
 
 REACH = 1.75  # R; every place has a point within √3 grids
 CENTRE = np.float32(1e-3)  # square pixels, added to squared distances: at a centre nothing else counts

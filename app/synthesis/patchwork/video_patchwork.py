@@ -1,7 +1,7 @@
 """Patchwork of a video whose patches stand still: what stands still in the clip stands still in the output.
 
 First stage: every cell has a sequence of its own, made of the clip's frames rearranged in time
-(`app.synthesis.patchwork.transitions`). Second stage: every frame is a patchwork of the sequences' frames with the same
+(`microtexture.patchwork.transitions`). Second stage: every frame is a patchwork of the sequences' frames with the same
 arrangement of cells. The two are combined: no sequence is ever stored. With the weights w_i of the cells, ŵ_i = w_i /
 √(Σ w_i²), α and β of the transitions and the average image A,
 
@@ -21,10 +21,10 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from app.synthesis.arrays import Ints, Real
-from app.synthesis.parallel import Team
-from app.synthesis.patchwork.cells import Cells, Window
-from app.synthesis.patchwork.transitions import Transitions
+from ..arrays import Ints, Real
+from ..parallel import Team
+from .cells import Cells, Window
+from .transitions import Transitions
 
 STRIP = 128  # rows: with slighter strips less is outside of round cells, but the calls take longer than that saves
 TINY = 1e-30  # instead of 0, for a cell that has a part of no pixel

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from app.synthesis.arrays import Real
+from ..arrays import Real
 
 
 @dataclass(frozen=True)

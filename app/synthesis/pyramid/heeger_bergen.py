@@ -22,12 +22,12 @@ from typing import Literal
 import numpy as np
 from numpy.random import SFC64, Generator, SeedSequence
 
-from app.synthesis.arrays import Complex, Progress, Real
-from app.synthesis.fourier.periodic import smooth_planes
-from app.synthesis.parallel import Team, Work
-from app.synthesis.pyramid.colour_space import ColourSpace
-from app.synthesis.pyramid.histogram import match, quantiles
-from app.synthesis.pyramid.pyramid import Band, SteerablePyramid, Total, to_image, to_spectrum
+from ..arrays import Complex, Progress, Real
+from ..fourier.periodic import smooth_planes
+from ..parallel import Team, Work
+from .colour_space import ColourSpace
+from .histogram import match, quantiles
+from .pyramid import Band, SteerablePyramid, Total, to_image, to_spectrum
 
 Edges = Literal["periodic", "mirror"]
 

@@ -10,7 +10,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from app.synthesis.arrays import Real
+from ..arrays import Real
 
 CHUNK = 1 << 14  # values worked on at a time, so that what is in between stays in the cache
 

@@ -31,8 +31,8 @@ from typing import NamedTuple
 import numpy as np
 import scipy.fft
 
-from app.synthesis.arrays import Complex, Real
-from app.synthesis.elementary import log2
+from ..arrays import Complex, Real
+from ..elementary import log2
 
 
 class Band(NamedTuple):

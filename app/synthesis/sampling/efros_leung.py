@@ -22,9 +22,9 @@ import numpy as np
 from numpy.random import SFC64, Generator, SeedSequence
 from numpy.typing import NDArray
 
-from app.synthesis.arrays import Progress, Real
-from app.synthesis.parallel import Team
-from app.synthesis.sampling.window_search import PatchSearch
+from ..arrays import Progress, Real
+from ..parallel import Team
+from .window_search import PatchSearch
 
 Index = NDArray[np.intp]
 

@@ -21,9 +21,9 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from app.synthesis.arrays import Real
-from app.synthesis.elementary import exp
-from app.synthesis.parallel import Team
+from ..arrays import Real
+from ..elementary import exp
+from ..parallel import Team
 
 Double = NDArray[np.float64]
 Index = NDArray[np.intp]
