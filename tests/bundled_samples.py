@@ -6,6 +6,7 @@ import av
 from PIL import Image
 
 from app.experiments.model import Sample
+from app.images.media import Media
 from app.samples import bundled
 from app.settings import ROOT
 
@@ -17,9 +18,8 @@ def sample_of(sample_id: str) -> Sample:
         with av.open(entry.path) as container:
             film = container.streams.video[0]
             rate = float(film.average_rate or 0)
-            return Sample(
-                sample_id, "", film.width, film.height, 3, 8, False, datetime.now(UTC), film.frames, rate=rate
-            )
+            video = Media(film.width, film.height, 3, 8, False, film.frames, rate)
+            return Sample(**video.properties(), id=sample_id, digest="", created_at=datetime.now(UTC))
     with Image.open(entry.path) as picture:
         channels = 1 if picture.mode in ("L", "I;16") else 3
-        return Sample(sample_id, "", *picture.size, channels, 8, False, datetime.now(UTC))
+        return Sample(*picture.size, channels, 8, False, id=sample_id, digest="", created_at=datetime.now(UTC))

@@ -170,12 +170,12 @@ def _experiment(request: Request, answer: Answer, photos: Mapping[str, Decoded],
         if {"width", "height"} & parameters.keys():
             raise InvalidInputError("Give either --size or --width and --height.")
         first = photos[inputs[0].sample]
-        base = inputs[0].crop or Rectangle(0, 0, first.pixels.shape[1], first.height)
+        base = inputs[0].crop or Rectangle(0, 0, first.width, first.height)
         parameters["width"], parameters["height"] = output_size(request.size, base)
     return prepare(
         NewExperiment(request.method, inputs, parameters, answer=answer),
         "",
-        sample=lambda name: _as_sample(name, photos[name]),
+        sample=lambda name: Sample(**photos[name].properties(), id=name, digest="", created_at=datetime.now(UTC)),
         transparent=lambda sample, crop, frames: _holds_transparency(photos[sample.id], crop, frames),
         allowed=Allowed.by(settings),
     )
@@ -200,23 +200,6 @@ def output_size(text: str, crop: Rectangle) -> tuple[int, int]:
         return crop.scaled(float(found[1]))
     raise InvalidInputError(
         f"--size is WIDTHxHEIGHT, for example 1024x1024, or a multiple of the crop, x2; got {said(text)}."
-    )
-
-
-def _as_sample(name: str, photo: Decoded) -> Sample:
-    _, width, channels = photo.pixels.shape
-    return Sample(
-        id=name,
-        digest="",
-        width=width,
-        height=photo.height,
-        channels=channels,
-        depth=photo.depth,
-        transparent=photo.alpha is not None,
-        created_at=datetime.now(UTC),
-        frames=photo.frames,
-        media_type=photo.media_type,
-        rate=photo.rate,
     )
 
 

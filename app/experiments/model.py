@@ -8,6 +8,8 @@ from typing import Any, Literal
 
 from app.errors import InvalidInputError
 from app.images.crop import Frames, Rectangle
+from app.images.media import Media
+from app.methods.model import PictureInfo
 
 DEEP = "@16:"  # in the name of a job, between a finished experiment and the output to compute at 16 bits
 
@@ -27,37 +29,20 @@ class Status(StrEnum):
         return self in {Status.SUCCEEDED, Status.FAILED, Status.CANCELLED}
 
 
-@dataclass(frozen=True)
-class Sample:
-    """An uploaded or bundled picture or video, stored once, upright, in sRGB, without metadata.
+@dataclass(frozen=True, kw_only=True)
+class Sample(Media):
+    """An uploaded or bundled picture or video, stored once, upright, in sRGB, without metadata."""
 
-    ``digest`` is the SHA-256 (hex) of its stored PNG file, the name under which the blob store keeps it. ``depth`` is
-    8 or 16 bits per channel; ``channels`` counts colour channels (1 or 3); ``transparent`` says that the stored PNG has
-    an alpha channel with pixels that are not opaque. ``title`` is set for bundled samples, whose ids are file stems.
-
-    A video has more than one of ``frames``, ``rate`` of them a second, and ``media_type`` is what it was uploaded as;
-    its file is a frame stack (`app.images.stored_video`): one PNG of all frames, one below the other, each of
-    ``width`` × ``height``.
-    """
-
+    #: Of addresses; of a bundled sample the stem of its file's name.
     id: str
+    #: SHA-256 (hex) of the stored PNG file, its name in the blob store; of a video that of its frame stack.
     digest: str
-    width: int
-    height: int
-    channels: int
-    depth: int
-    transparent: bool
+    #: When it was added.
     created_at: datetime
-    frames: int = 1
-    media_type: str = "image/png"
+    #: Of a bundled sample; None of an upload.
     title: str | None = None
+    #: Whether it comes with the service.
     bundled: bool = False
-    rate: float = 0.0
-
-    @property
-    def moving(self) -> bool:
-        """Whether it is a video."""
-        return self.frames > 1
 
 
 @dataclass(frozen=True)
@@ -73,23 +58,14 @@ class ExperimentInput:
     frames: Frames = field(default_factory=Frames)
 
 
-@dataclass(frozen=True)
-class Output:
-    """A named file of an experiment. Names that start with ``.`` are the service's own and are not listed.
+@dataclass(frozen=True, kw_only=True)
+class Output(PictureInfo):
+    """A named file of an experiment. Names that start with ``.`` are the service's own and are not listed."""
 
-    ``kind``, ``frames`` and ``rate`` are as in `app.methods.model.Picture`.
-    """
-
-    name: str
-    title: str
-    media_type: str
-    width: int
-    height: int
+    #: Size of the file.
     bytes: int
+    #: SHA-256 (hex) of the file, its name in the blob store.
     digest: str
-    kind: Literal["texture", "view"] = "view"
-    frames: int = 1
-    rate: float = 0.0
 
     @property
     def listed(self) -> bool:
@@ -103,33 +79,45 @@ class Output:
 
 @dataclass(frozen=True)
 class Experiment:
-    """One run: method, inputs and parameters (complete: defaults and sizes filled in), and what came of it.
+    """One run: method, inputs and parameters, and what came of it."""
 
-    ``owner`` is the SHA-256 (hex) of the owner's token. ``timings`` are seconds by stage, in order. ``diagnostics``
-    is what was measured of it (see `app.experiments.diagnostics`), ``environment`` where it was computed (see
-    `app.experiments.environment`; empty in what earlier versions made). ``depth`` is the bits per channel of its
-    pictures: that of its deepest sample. A ``transient`` one is made for a single answer: only the output that is
-    ``wanted`` is kept, and it goes with the answer.
-    """
-
+    #: Of addresses, and of the job that computes it.
     id: str
+    #: Name of the method.
     method: str
+    #: In the order of the method's slots.
     inputs: tuple[ExperimentInput, ...]
+    #: Complete: defaults and sizes are filled in.
     parameters: Mapping[str, Any]
+    #: Whether the archive shows it.
     listed: bool
+    #: SHA-256 (hex) of the owner's token.
     owner: str
+    #: When it was submitted.
     created_at: datetime
+    #: Where it stands.
     status: Status = Status.QUEUED
+    #: How often a worker began it.
     attempts: int = 0
+    #: Its files, in the order in which the method yields them.
     outputs: tuple[Output, ...] = ()
+    #: Seconds by stage, in order.
     timings: Mapping[str, float] = field(default_factory=dict)
+    #: Measurements of its crops and textures, see `app.experiments.diagnostics`.
     diagnostics: Mapping[str, Any] = field(default_factory=dict)
+    #: Versions and processor that computed it, see `app.experiments.environment`; empty where they were not recorded.
     environment: Mapping[str, str] = field(default_factory=dict)
+    #: Why it failed and what to try.
     error: str | None = None
+    #: When a worker began it last.
     started_at: datetime | None = None
+    #: When it succeeded, failed or was cancelled.
     finished_at: datetime | None = None
+    #: Whether it is made for a single answer, and deleted with it.
     transient: bool = False
+    #: Bits per channel of its pictures: those of its deepest sample.
     depth: Literal[8, 16] = 8
+    #: Of a transient one the only output that is kept.
     wanted: str = "texture"
 
     def output(self, name: str) -> Output | None:

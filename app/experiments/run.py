@@ -187,18 +187,7 @@ def _staged(blobs: BlobStore, pictures: Iterable[Picture]) -> Iterator[list[tupl
 def _kept(blobs: BlobStore, picture: Picture, path: Path) -> Output:
     size = path.stat().st_size
     digest = blobs.put_file(path)
-    return Output(
-        name=picture.name,
-        title=picture.title,
-        media_type=picture.media_type,
-        width=picture.width,
-        height=picture.height,
-        bytes=size,
-        digest=digest,
-        kind=picture.kind,
-        frames=picture.frames,
-        rate=picture.rate,
-    )
+    return Output(**picture.properties(), bytes=size, digest=digest)
 
 
 class Stages:

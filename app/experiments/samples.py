@@ -69,19 +69,12 @@ class SampleIntake:
         found = intake(path, self._blobs.temporary_directory, self._limits)
         with self._blobs.lease():
             sample = Sample(
+                **found.properties(),
                 id=sample_id,
                 digest=self._blobs.put_file(found.path),
-                width=found.width,
-                height=found.height,
-                channels=found.channels,
-                depth=found.depth,
-                transparent=found.transparent,
                 created_at=datetime.now(UTC),
-                frames=found.frames,
-                media_type=found.media_type,
                 title=title,
                 bundled=title is not None,
-                rate=found.rate,
             )
             self._store.add_sample(sample, owner)
         return sample

@@ -11,9 +11,10 @@ import numpy as np
 from app.errors import BrokenFileError, TooLargeError, UnsupportedFormatError
 from app.images.colour import to_srgb
 from app.images.formats import animation, jpeg, png, tiff, video, webp
-from app.images.formats.clip import Clip, ClipLimits, Frame, rate_of
+from app.images.formats.clip import Clip, ClipLimits, Frame
 from app.images.formats.containers import container_of
 from app.images.formats.still import Raw, is_opaque, upright, with_channels
+from app.images.media import Media
 from app.images.png_writer import SIGNATURE, Pixels
 
 if TYPE_CHECKING:
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 
 MEBIBYTE = 1 << 20
 FORMATS = "PNG, JPEG, WebP, TIFF and GIF pictures, and MP4 (H.264), WebM, GIF, WebP and PNG videos"
-STILL = "image/png"
 OTHERS = {
     b"FLV": "a Flash video",
     b"OggS": "an Ogg video",
@@ -68,30 +68,20 @@ class Limits:
         return ClipLimits(self.video_frames, self.video_seconds, self.video_pixels)
 
 
-@dataclass(frozen=True)
-class Decoded:
-    """A picture or a video, upright and in sRGB.
+@dataclass(frozen=True, kw_only=True)
+class Decoded(Media):
+    """A picture or a video with its pixels; of a video they are its frame stack, the frames one below the other."""
 
-    ``pixels`` is (H, W, C) uint8 or uint16, C 1 (grey) or 3 (RGB); ``alpha`` is (H, W) of the same type, or None if
-    every pixel is opaque (`app.images.formats.still.is_opaque`). Of a video both are its frame stack: the ``frames``,
-    ``rate`` of them a second, one below the other, uint8. ``media_type`` is what a video was.
-    """
-
+    #: (H, W, C), uint8 or uint16; H counts the rows of all frames, C is `channels`.
     pixels: Pixels
+    #: (H, W) of the same type; None if every pixel is opaque (`app.images.formats.still.is_opaque`).
     alpha: Pixels | None
-    frames: int = 1
-    rate: float = 0.0
-    media_type: str = STILL
 
-    @property
-    def depth(self) -> int:
-        """Bits per channel, 8 or 16."""
-        return self.pixels.itemsize * 8
-
-    @property
-    def height(self) -> int:
-        """Rows of one frame."""
-        return len(self.pixels) // self.frames
+    @classmethod
+    def still(cls, pixels: Pixels, alpha: Pixels | None) -> "Decoded":
+        """A still picture of these pixels."""
+        height, width, channels = pixels.shape
+        return cls(width, height, channels, pixels.itemsize * 8, alpha is not None, pixels=pixels, alpha=alpha)
 
 
 def decode(path: Path, limits: Limits) -> Decoded:
@@ -110,8 +100,7 @@ def decode(path: Path, limits: Limits) -> Decoded:
         strip += frame.pixels.tobytes()
         times.append(frame.seconds)
     pixels, alpha = with_channels(np.frombuffer(strip, np.uint8).reshape(-1, found.width, found.channels))
-    media_type = found.media_type if len(times) > 1 else STILL
-    return Decoded(pixels, alpha, len(times), rate_of(times, found.said_rate), media_type)
+    return Decoded(**found.media(times).properties(), pixels=pixels, alpha=alpha)
 
 
 def read(path: Path, limits: Limits) -> Decoded | Clip:
@@ -146,7 +135,7 @@ def read(path: Path, limits: Limits) -> Decoded | Clip:
             raw = _reader(data)(data, limits.pixels)
             pixels = upright(to_srgb(raw.pixels, raw.profile), raw.orientation)
             opaque = raw.alpha is None or is_opaque(raw.alpha)
-            return Decoded(pixels, None if raw.alpha is None or opaque else upright(raw.alpha, raw.orientation))
+            return Decoded.still(pixels, None if raw.alpha is None or opaque else upright(raw.alpha, raw.orientation))
     return replace(clip, frames=_told(clip.frames))
 
 

@@ -5,7 +5,7 @@ A method is declared once; its form, its API schema, its command line options an
 
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import KW_ONLY, dataclass, field, fields
 from pathlib import Path
 from typing import Any, Literal, Protocol
 
@@ -106,26 +106,40 @@ class Fact:
 
 
 @dataclass(frozen=True)
-class Picture:
-    """One picture a method gives back, already a file.
+class PictureInfo:
+    """Properties of a picture or a video that a method gives: of the `Picture` itself, and of the output it becomes."""
 
-    ``kind`` says what it is: a ``texture`` that was synthesised (the structure meter measures it, and pages show it
-    at once), or a ``view`` of something on the way, such as a spectrum. ``facts`` go into the experiment's
-    diagnostics. ``data`` is the file's content, or the file itself in the context's ``scratch`` directory, which then
-    belongs to who takes the picture. A still picture is a PNG file of one frame; a moving one has several, ``rate`` of
-    them a second.
-    """
-
+    #: Of addresses; unique within an experiment.
     name: str
+    #: For people.
     title: str
+    #: Pixels from left to right.
     width: int
+    #: Pixels from top to bottom, of one frame.
     height: int
-    data: bytes | Path
+    _: KW_ONLY
+    #: A ``texture`` that was synthesised, which is measured and shown at once, or a ``view`` of something on the way.
     kind: Literal["texture", "view"] = "view"
-    facts: tuple[Fact, ...] = ()
+    #: Of the file; PNG of a still picture.
     media_type: str = "image/png"
+    #: Number of frames; 1 of a still picture.
     frames: int = 1
+    #: Frames a second; 0 of a still picture.
     rate: float = 0.0
+
+    def properties(self) -> dict[str, Any]:
+        """These fields by name, without what a derived class adds."""
+        return {each.name: getattr(self, each.name) for each in fields(PictureInfo)}
+
+
+@dataclass(frozen=True)
+class Picture(PictureInfo):
+    """One picture or video that a method gives back, already a file."""
+
+    #: The file's content, or the file itself in the context's ``scratch`` directory: then it is the receiver's.
+    data: bytes | Path
+    #: Numbers that the method found out, for the experiment's diagnostics.
+    facts: tuple[Fact, ...] = ()
 
 
 def first_size(sizes: Sequence[Size]) -> tuple[int, int]:

@@ -12,7 +12,7 @@ from app.experiments.preparation import Allowed, NewExperiment, NewInput, memory
 from app.images.crop import Frames, Rectangle
 
 SAMPLES = {
-    name: Sample(name, "", width, height, channels, 8, False, datetime(2026, 3, 1, tzinfo=UTC))
+    name: Sample(width, height, channels, 8, False, id=name, digest="", created_at=datetime(2026, 3, 1, tzinfo=UTC))
     for name, (width, height, channels) in {"sand": (300, 200, 3), "wall": (120, 260, 1), "moss": (90, 80, 3)}.items()
 }
 
@@ -82,7 +82,7 @@ def test_a_texture_that_a_method_could_not_hold_in_memory_is_refused(method: str
 
 
 CLIPS = {
-    "sea": Sample("sea", "", 64, 48, 3, 8, False, datetime(2026, 3, 1, tzinfo=UTC), frames=30, rate=15.0),
+    "sea": replace(SAMPLES["sand"], id="sea", width=64, height=48, frames=30, rate=15.0),
     "still": SAMPLES["moss"],
 }
 

@@ -16,7 +16,7 @@ COMPUTED = {"version": "1", "cpu": "a processor (X86_V3)", "numpy": "2", "scipy"
 
 def a_sample(**values: object) -> Sample:
     number = next(NUMBERS)
-    sample = Sample(f"sample{number}", f"{number:064x}", 640, 427, 3, 8, False, START)
+    sample = Sample(640, 427, 3, 8, False, id=f"sample{number}", digest=f"{number:064x}", created_at=START)
     return replace(sample, **values)
 
 
@@ -29,7 +29,7 @@ def an_experiment(sample: Sample, **values: object) -> Experiment:
 
 
 def an_output(name: str = "texture", **values: object) -> Output:
-    return replace(Output(name, "Texture", "image/png", 64, 32, 5 << 30, f"{next(NUMBERS):064x}"), **values)
+    return replace(Output(name, "Texture", 64, 32, bytes=5 << 30, digest=f"{next(NUMBERS):064x}"), **values)
 
 
 def succeeded(store: SqlStore, sample: Sample, **values: object) -> Experiment:

@@ -15,11 +15,11 @@ START = datetime(2026, 3, 1, 12, tzinfo=UTC)
 def test_a_database_without_the_newer_columns_gets_them(store_url: str, open_store: Callable[[], SqlStore]) -> None:
     """Diagnostics are empty, and of the outputs the texture alone is known to be one."""
     store = open_store()
-    store.add_sample(Sample("sample", "0" * 64, 640, 427, 3, 8, False, START))
+    store.add_sample(Sample(640, 427, 3, 8, False, id="sample", digest="0" * 64, created_at=START))
     inputs = (ExperimentInput("sample", Rectangle(1, 2, 30, 40)),)
     store.add(Experiment("old", "rpn", inputs, {"seed": 1}, True, "owner", START))
     store.start("old")
-    outputs = [Output(name, name, "image/png", 64, 32, 9, name * 8) for name in ("texture", "crop")]
+    outputs = [Output(name, name, 64, 32, bytes=9, digest=name * 8) for name in ("texture", "crop")]
     store.succeed("old", outputs, {}, {}, {})
     engine = sa.create_engine(store_url)
     with engine.begin() as connection:

@@ -129,12 +129,14 @@ class Pictures:
 
             path, media_type = cached(name, both), "image/webp"
         width, height = PREVIEW if name == PREVIEW_NAME else _thumbnail_size(name, crop, texture)
-        return Output(name, DERIVED[name], media_type, width, height, path.stat().st_size, pair_digest), path
+        size = path.stat().st_size
+        return Output(name, DERIVED[name], width, height, media_type=media_type, bytes=size, digest=pair_digest), path
 
     def _poster(self, name: str, output: Output) -> tuple[Output, Path]:
         path = self._picture(output)
         digest = hashlib.sha256(f"{name} {output.digest}".encode()).hexdigest()
-        return Output(name, DERIVED[name], PNG, output.width, output.height, path.stat().st_size, digest), path
+        size = path.stat().st_size
+        return Output(name, DERIVED[name], output.width, output.height, bytes=size, digest=digest), path
 
     def _picture(self, output: Output) -> Path:
         stored = self._blobs.path(output.digest)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from app.errors import TooLargeError
+from app.images.media import STILL, Media
 from app.images.png_writer import Pixels
 
 SLOWEST, FASTEST = 1.0, 120.0
@@ -42,6 +43,19 @@ class Clip:
     media_type: str
     frames: Iterator[Frame]
     said_rate: float = 0.0
+
+    def media(self, times: Sequence[float]) -> Media:
+        """Its properties, once all frames were taken; ``times`` are when each is shown."""
+        return Media(
+            self.width,
+            self.height,
+            channels=1 if self.channels < 3 else 3,
+            depth=8,
+            transparent=self.channels % 2 == 0,
+            frames=len(times),
+            rate=rate_of(times, self.said_rate),
+            media_type=self.media_type if len(times) > 1 else STILL,
+        )
 
 
 def check_clip(width: int, height: int, frames: int, seconds: float, limits: ClipLimits, *, more: bool = False) -> None:

@@ -7,7 +7,7 @@ import socket
 import subprocess
 import sys
 import tempfile
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from threading import BoundedSemaphore, Lock
 from typing import Any
@@ -15,7 +15,7 @@ from typing import Any
 from app.errors import AppError, BrokenFileError, BusyError, TooLargeError, UnsupportedFormatError
 from app.images.decode import Limits
 from app.images.intake import server as decoding_server
-from app.images.intake.store import Kept
+from app.images.media import Media
 
 AT_ONCE = max(2, os.cpu_count() or 2)
 WAIT_SECONDS = 60.0
@@ -30,11 +30,12 @@ ERRORS: dict[str, type[AppError]] = {
 }
 
 
-@dataclass(frozen=True)
-class Intake(Kept):
-    """A stored picture and where its file is."""
+@dataclass(frozen=True, kw_only=True)
+class Intake(Media):
+    """A stored picture or video."""
 
-    path: Path = field(kw_only=True)
+    #: Where its PNG file is; of a video its frame stack.
+    path: Path
 
 
 class DecodingServer:

@@ -121,7 +121,7 @@ def _confine(server: int, limits: Limits) -> None:
 
 def _work(path: Path, destination: Path, limits: Limits) -> dict[str, Any]:
     try:
-        return asdict(store(path, destination, limits))
+        return store(path, destination, limits).properties()
     except AppError as error:
         return {"error": type(error).__name__, "message": error.message}
     except MemoryError:

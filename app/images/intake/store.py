@@ -2,41 +2,23 @@
 
 from collections import deque
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from app.images.decode import STILL, Decoded, Limits, read
-from app.images.formats.clip import Clip, rate_of
+from app.images.decode import Decoded, Limits, read
+from app.images.formats.clip import Clip
+from app.images.media import Media
 from app.images.png_writer import Pixels, PngWriter
 
 STRIP_ROWS, STRIP_PIXELS = 64, 1 << 16  # small strips: a crop is read by strips
 THREADS, WAITING = 2, 4
 
 
-@dataclass(frozen=True)
-class Kept:
-    """What is in the file: a picture, upright, in sRGB, without metadata.
+def store(path: Path, destination: Path, limits: Limits) -> Media:
+    """Decode an uploaded file, write it as PNG, and return what is in it.
 
-    It is a PNG file of ``depth`` (8 or 16) bits; ``channels`` counts colour channels, 1 or 3; if ``transparent``, an
-    alpha channel follows them. A video has several ``frames``, ``rate`` of them a second, each of ``width`` ×
-    ``height`` pixels, in a frame stack (`app.images.stored_video`); ``media_type`` is what it was, ``image/png`` for a
-    still.
-    """
-
-    width: int
-    height: int
-    channels: int
-    depth: int
-    transparent: bool
-    frames: int = 1
-    rate: float = 0.0
-    media_type: str = STILL
-
-
-def store(path: Path, destination: Path, limits: Limits) -> Kept:
-    """Decode an uploaded file and write it as PNG; of a video only a few frames are in memory at a time.
+    Of a video, whose file is a frame stack (`app.images.stored_video`), only a few frames are in memory at a time.
 
     Raises
     ------
@@ -47,8 +29,7 @@ def store(path: Path, destination: Path, limits: Limits) -> Kept:
     if isinstance(found, Clip):
         return _store_clip(found, destination)
     destination.write_bytes(to_png(found))
-    height, width, channels = found.pixels.shape
-    return Kept(width, height, channels, found.depth, found.alpha is not None)
+    return found
 
 
 def to_png(picture: Decoded) -> bytes:
@@ -64,7 +45,7 @@ def to_png(picture: Decoded) -> bytes:
     return writer.finish()
 
 
-def _store_clip(clip: Clip, destination: Path) -> Kept:
+def _store_clip(clip: Clip, destination: Path) -> Media:
     writer = PngWriter(clip.width, None, clip.channels, 8)
     times: list[float] = []
     waiting: deque[Future[None]] = deque()
@@ -77,16 +58,7 @@ def _store_clip(clip: Clip, destination: Path) -> Kept:
         for written in waiting:
             written.result()
     writer.save(destination)
-    return Kept(
-        clip.width,
-        clip.height,
-        clip.channels - 1 + clip.channels % 2,
-        8,
-        clip.channels % 2 == 0,
-        len(times),
-        rate_of(times, clip.said_rate),
-        clip.media_type if len(times) > 1 else STILL,
-    )
+    return clip.media(times)
 
 
 def _submit(pool: ThreadPoolExecutor, writer: PngWriter, y: int, frame: Pixels) -> Future[None]:

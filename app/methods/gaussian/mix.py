@@ -151,7 +151,7 @@ class _Run:
         self._begin, self._end = self._end, end
         levels = Levels(write, self._channels, 0, self._sources[0].peak, 2**self._context.depth - 1)
         self._mixture.emit(weights, levels, "strip" if strip else "texture")
-        return Picture(name, title, self._width, self._height, writer.finish(), "texture")
+        return Picture(name, title, self._width, self._height, writer.finish(), kind="texture")
 
 
 def run(sources: Sequence[Source], params: MixParams, context: Context) -> Iterator[Picture]:

@@ -119,7 +119,7 @@ class _Run:
             low, high = extent.low, extent.high
         writer = PngWriter(self._width, self._height, len(field.mean), self._context.depth)
         field.emit(Levels(writer.write, len(field.mean), low, high, self._peak))
-        return Picture("texture", "Texture", self._width, self._height, writer.finish(), "texture")
+        return Picture("texture", "Texture", self._width, self._height, writer.finish(), kind="texture")
 
     def _field(self, ends: dict[str, float], start: float = 0.0, said: str | None = None) -> NoiseField:
         """The noise's field; each of its stages goes from the end of the one before to its own in ``ends``.

@@ -46,7 +46,7 @@ def encode(
 
     with Team(context.threads) as team:
         team.run(write, row_blocks(height), lambda part: None)
-    return Picture(name, title, width, height, writer.finish(), kind, facts)
+    return Picture(name, title, width, height, writer.finish(), facts, kind=kind)
 
 
 def crops(sources: Sequence[Source], context: Context) -> Iterator[Picture]:

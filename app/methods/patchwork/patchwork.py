@@ -119,7 +119,7 @@ def run(sources: Sequence[Source], params: PatchworkParams, context: Context) ->
 
         png = streamed(made.rows, h.shape[2], source.peak, context.between(0.1, 0.6))
         fact = Fact("cells", "Cells", cells.count)
-        yield Picture("texture", "Texture", width, height, png, "texture", (fact,))
+        yield Picture("texture", "Texture", width, height, png, (fact,), kind="texture")
         del made, png
         context.progress("views", 0.6)
         places = coordinate_colours(*h.shape[:2])

@@ -40,7 +40,8 @@ def checked(text: str) -> str:
 
 def sample(name: str, frames: int = 1) -> Sample:
     now = datetime(2026, 1, 1, tzinfo=UTC)
-    return Sample(name, "0" * 64, 48, 40, 3, 8, False, now, frames=frames, title=name.capitalize(), rate=10.0)
+    title, digest = name.capitalize(), "0" * 64
+    return Sample(48, 40, 3, 8, False, frames, 10.0, id=name, digest=digest, created_at=now, title=title)
 
 
 @pytest.fixture

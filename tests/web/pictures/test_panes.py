@@ -13,7 +13,7 @@ from app.web.pictures.videos import Clip
 
 
 def output(name: str, kind: Any = "view") -> Output:
-    return Output(name, name.capitalize(), "image/png", 8, 6, 100, "0" * 64, kind)
+    return Output(name, name.capitalize(), 8, 6, kind=kind, bytes=100, digest="0" * 64)
 
 
 OLD = Experiment(
@@ -29,7 +29,7 @@ OLD = Experiment(
 
 
 def film(name: str, form: str, kind: Any = "view", frames: int = 12) -> Output:
-    return Output(name, name.capitalize(), form, 8, 6, 100, "0" * 64, kind, frames, 24.0)
+    return replace(output(name, kind), media_type=form, frames=frames, rate=24.0)
 
 
 MOVING = replace(
