@@ -10,7 +10,8 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check
 export PIP_NO_INPUT := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run test lint programs chaos load bench lock readme-picture clean
+.PHONY: help setup run dev check fix test lint lint-python lint-templates lint-js types test-js test-fast programs chaos load bench \
+	lock readme-picture clean
 
 help: ## list these targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-15s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -20,20 +21,47 @@ setup: $(VENV)/.ready ## build .venv with the locked dependencies and the comman
 run: setup ## serve on http://127.0.0.1:$(PORT), data in ./data
 	$(BIN)/microtexture serve --port $(PORT)
 
-test: lint programs ## everything: lint, types, unit, doctest, API, acceptance and crash tests
-	@# What kills processes, and what watches a page, has the machine to itself.
+dev: setup ## the same, started again when a module of app/ changes; templates and static files are read anew each time
+	$(BIN)/uvicorn --factory app.main:create_app --reload --reload-dir app --port $(PORT) --timeout-graceful-shutdown 2
+
+# Every part prints in one piece when it is done, and the others go on when one fails.
+check: $(VENV)/.ready-dev node_modules/.ready ## before every commit: lint, types and the fast tests, in half a minute
+	@$(MAKE) --no-print-directory --jobs=3 --output-sync=target --keep-going test-fast types lint-js lint-python lint-templates test-js
+
+fix: $(VENV)/.ready-dev node_modules/.ready ## mend what ruff can mend, and format
+	$(BIN)/ruff check --fix .
+	$(BIN)/ruff format .
+
+# What kills processes has the machine to itself.
+test: $(if $T,$(VENV)/.ready-dev,lint test-js programs) ## all that CI runs, or T=tests/web/test_press.py, a directory or one test
+ifdef T
+	$(WITH_BROWSER) $(BIN)/pytest $T
+else
 	$(WITH_BROWSER) $(BIN)/pytest -n 2 --dist loadfile -m 'not (acceptance or chaos or load)'
-	$(WITH_BROWSER) $(BIN)/pytest tests -m '(acceptance or chaos) and not load'
+	$(WITH_BROWSER) $(BIN)/pytest -n 2 --dist loadfile -m 'acceptance and not (chaos or load)' tests
+	$(WITH_BROWSER) $(BIN)/pytest -m 'chaos and not load' tests
+endif
+
+test-fast: $(VENV)/.ready-dev
+	$(BIN)/pytest -q -n 2 --dist loadfile --hypothesis-profile=quick -m 'not (slow or acceptance or chaos or load)'
+
+lint: lint-python types lint-templates lint-js ## only what reads the code: ruff, mypy, j2lint and the lint of the scripts
+
+lint-python: $(VENV)/.ready-dev
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+types: $(VENV)/.ready-dev
+	$(BIN)/mypy
 
 # S3 wants the nesting shown within the braces, S6 forbids `{%-`, and S7 a condition around a word or an attribute.
 lint-templates: $(VENV)/.ready-dev
 	$(BIN)/python -m j2lint templates --extensions html --rules_dir lint/templates --ignore S3 S6 S7
 
-lint: lint-templates $(VENV)/.ready-dev node_modules/.ready ## ruff, mypy, j2lint and eslint
-	$(BIN)/ruff check .
-	$(BIN)/ruff format --check .
-	$(BIN)/mypy
+lint-js: node_modules/.ready
 	$(BIN)/node node_modules/eslint/bin/eslint.js static/js
+
+test-js: node_modules/.ready
 
 chaos: programs ## only the tests that kill processes
 	$(BIN)/pytest -m chaos

@@ -1,10 +1,12 @@
-"""The order of the tests, and the browser that some of them drive."""
+"""The order of the tests, how many examples their properties take, and the browser that some of them drive."""
 
 import os
 from pathlib import Path
 from typing import Any
 
 import pytest
+
+from tests import profiles
 
 BROWSER = Path(__file__).parent / "acceptance"
 CHROMIUM = os.environ.get("CHROMIUM", "/usr/bin/chromium")
@@ -18,6 +20,8 @@ ARGUMENTS = [
     "--disable-component-update",
     "--disable-sync",
 ]
+
+profiles.register()
 
 os.environ.setdefault("MICROTEXTURE_CATALOGUE", "false")  # figures in the background would disturb what others measure
 

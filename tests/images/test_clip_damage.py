@@ -21,6 +21,7 @@ from app.images.intake.client import intake
 from app.images.stored_video import read_frames
 from app.settings import ROOT
 from tests.images.clips import FULL, animation, lossless, moving, video
+from tests.profiles import examples
 
 Read = Callable[..., Decoded]
 FILM = moving(8)
@@ -91,7 +92,7 @@ def test_a_truncated_fragment_is_refused_and_the_whole_ones_before_it_are_not(
 
 
 @pytest.mark.parametrize("name", WRITERS)
-@settings(max_examples=40, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(40), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_damaged_videos_are_read_or_refused_and_harm_nothing(
     tmp_path: Path, directory: Path, files: dict[str, bytes], name: str, data: st.DataObject

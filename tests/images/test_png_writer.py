@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from app.images.png_writer import PngWriter, adler32_combine, encode_png
+from tests.profiles import examples
 
 Picture = NDArray[np.uint8] | NDArray[np.uint16]
 
@@ -37,7 +38,7 @@ def read(png: bytes, shape: tuple[int, ...]) -> Picture:
     return np.asarray(imagecodecs.png_decode(png)).reshape(shape)
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=examples(80))
 @given(
     st.integers(1, 70),
     st.integers(1, 70),

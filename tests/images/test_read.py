@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from PIL import Image
@@ -34,7 +34,6 @@ def strips(tmp_path_factory: pytest.TempPathFactory, noise: Noise) -> tuple[Path
     return path, pixels
 
 
-@settings(max_examples=100, deadline=None)
 @given(data=st.data())
 def test_a_crop_is_what_it_is_in_the_whole_picture(strips: tuple[Path, NDArray[Any]], data: st.DataObject) -> None:
     path, pixels = strips

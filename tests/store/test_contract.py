@@ -11,6 +11,7 @@ from app.errors import ConflictError, DeletedError, InvalidInputError, NotFoundE
 from app.experiments.model import Experiment, ExperimentInput, Sample, Status
 from app.images.crop import Frames, Rectangle
 from app.store.sql import SqlStore
+from tests.profiles import examples
 from tests.store.records import START, a_sample, an_experiment, an_output, succeeded
 
 
@@ -213,7 +214,7 @@ def test_only_unused_old_uploads_are_removed(store: SqlStore, sample: Sample) ->
     assert store.used([unused.digest, sample.digest, young.digest, bundled.digest]) == {young.digest, bundled.digest}
 
 
-@settings(max_examples=15, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(15), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(ages=st.lists(st.integers(0, 4), max_size=12), limit=st.integers(1, 5))
 def test_paging_shows_every_experiment_once_newest_first(store: SqlStore, ages: list[int], limit: int) -> None:
     for experiment in store.page(limit=100).experiments:

@@ -23,6 +23,7 @@ from app.errors import AppError, BrokenFileError, BusyError, TooLargeError, Unsu
 from app.images.decode import Limits, decode
 from app.images.intake import client as module
 from app.images.intake.client import intake
+from tests.profiles import examples
 
 Noise = Callable[..., NDArray[Any]]
 SAMPLES = Path(__file__).parents[3] / "samples"
@@ -234,7 +235,7 @@ def files() -> dict[str, bytes]:
 
 
 @pytest.mark.parametrize("file_format", ["png", "jpeg", "webp", "tiff"])
-@settings(max_examples=25, deadline=None, derandomize=True, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=examples(25), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_damaged_files_are_read_or_refused_and_harm_nothing(
     tmp_path: Path, directory: Path, files: dict[str, bytes], file_format: str, data: st.DataObject

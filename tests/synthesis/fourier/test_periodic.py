@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from app.synthesis.fourier.periodic import periodic_component, periodic_spectrum, smooth_component
+from tests.profiles import examples
 
 SAMPLES = Path(__file__).parents[3] / "samples"
 SIZES = [(1, 1), (1, 9), (9, 1), (2, 2), (2, 7), (6, 7), (8, 8), (13, 11)]
@@ -32,7 +33,7 @@ def image(height, width, channels=3, seed=0):
     return np.random.default_rng(seed).uniform(0, 255, (height, width, channels)).astype(np.float32)
 
 
-@settings(max_examples=25, deadline=None, derandomize=True)
+@settings(max_examples=examples(25))
 @given(st.integers(1, 9), st.integers(1, 9), st.integers(0, 1000))
 def test_it_is_the_solution_of_the_dense_poisson_problem(height, width, seed):
     h = image(height, width, 1, seed)

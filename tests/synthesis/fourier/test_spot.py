@@ -7,11 +7,12 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from app.synthesis.fourier.spot import centre, extend_spot, window
+from tests.profiles import examples
 
 PROFILES = ["bump", "gaussian"]
 
 
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=examples(60))
 @given(st.integers(1, 300), st.floats(0, 0.5), st.sampled_from(PROFILES))
 def test_the_window_has_l2_norm_one_is_symmetric_and_never_falls_on_its_way_in(n, alpha, profile):
     phi = window(n, alpha, profile)

@@ -11,6 +11,7 @@ from app.synthesis.fourier.periodic import periodic_component, smooth_component
 from app.synthesis.fourier.spot import centre, extend_spot
 from app.synthesis.gaussian.adsn import adsn
 from app.synthesis.gaussian.rpn import rpn
+from tests.profiles import examples
 from tests.synthesis.images import image
 from tests.synthesis.stopping import stops_at
 
@@ -34,7 +35,7 @@ def test_the_modulus_is_kept(size):
     assert (np.abs(after - before) <= 1e-4 * before + 1e-6 * before.max()).all()
 
 
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(max_examples=examples(40))
 @given(st.tuples(*[st.integers(1, 40)] * 4), st.integers(1, 5), st.integers(0, 2**53 - 1))
 def test_modulus_mean_and_phase_differences_are_those_of_the_spot_at_any_size(sizes, channels, seed):
     h = image(sizes[0], sizes[1], channels)
@@ -78,7 +79,7 @@ def test_values_that_are_not_finite_are_refused(model, bad, size):
         model(h, size, size)
 
 
-@settings(max_examples=30, deadline=None, derandomize=True)
+@settings(max_examples=examples(30))
 @given(st.tuples(*[st.integers(1, 12)] * 4), st.sampled_from(["add", "replace"]), st.booleans(), st.floats(0, 0.5))
 def test_no_size_or_option_makes_a_value_that_is_not_finite(sizes, phase, rayleigh, alpha):
     h = image(*sizes[:2])

@@ -13,6 +13,7 @@ from app.synthesis.fourier.spot import window
 from app.synthesis.gaussian.rpn import random_phase, rpn
 from app.synthesis.gaussian.video_phase import pair, rows_of_phase
 from app.synthesis.gaussian.video_rpn import jump_share, middle, video_rpn
+from tests.profiles import examples
 from tests.synthesis.images import image
 from tests.synthesis.stopping import stops_at
 
@@ -98,7 +99,7 @@ def test_modulus_mean_and_phase_differences_are_those_of_the_clip(shape):
     keeps(film, z)
 
 
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(max_examples=examples(40))
 @given(st.tuples(*[st.integers(1, 12)] * 6), st.integers(1, 4), st.integers(0, 2**53 - 1))
 def test_at_any_other_size_they_are_those_of_the_extended_spot(sizes, channels, seed):
     film = clip(*sizes[:3], channels)

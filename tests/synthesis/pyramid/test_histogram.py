@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from app.synthesis.pyramid.histogram import match, quantiles
+from tests.profiles import examples
 
 FLOATS = hnp.arrays(np.float32, st.integers(1, 200), elements=st.floats(-(2.0**100), 2.0**100, width=32))
 
@@ -17,7 +18,7 @@ def matched(values, ordered):
     return result
 
 
-@settings(max_examples=200, deadline=None, derandomize=True)
+@settings(max_examples=examples(200))
 @given(FLOATS, st.integers(0, 2**32))
 def test_the_histogram_is_the_targets_and_the_order_stays(values, seed):
     target = np.sort(np.random.default_rng(seed).standard_normal(len(values)).astype(np.float32))
@@ -35,14 +36,12 @@ def test_more_values_than_fit_into_a_piece_of_work_are_matched_too():
     assert (result.flat[np.argsort(values, axis=None, kind="stable")] == target).all()
 
 
-@settings(max_examples=100, deadline=None, derandomize=True)
 @given(FLOATS)
 def test_values_that_have_the_histogram_already_stay_as_they_are(values):
     values += 0  # no −0, which comes before 0
     assert (matched(values, np.sort(values)) == values).all()
 
 
-@settings(max_examples=100, deadline=None, derandomize=True)
 @given(st.integers(1, 60), st.integers(1, 60))
 def test_other_sizes_take_quantiles_interpolated_between_the_targets(size, count):
     ordered = np.sort(np.random.default_rng(size).standard_normal(size).astype(np.float32))

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from pyrtools.pyramids import SteerablePyramidFreq
 
 from app.synthesis.pyramid.pyramid import Band, SteerablePyramid, Total, to_image, to_spectrum
+from tests.profiles import examples
 
 SIZES = [(64, 64), (33, 33), (61, 67), (48, 100), (101, 30), (17, 2), (1, 40), (5, 1), (1, 1)]
 
@@ -44,7 +45,7 @@ def test_an_image_of_even_odd_or_prime_size_is_rebuilt_to_1e_5(size, scales, ori
     assert error <= 1e-5 * np.abs(picture).max()
 
 
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=examples(60))
 @given(st.integers(1, 90), st.integers(1, 90), st.integers(1, 8), st.integers(1, 8))
 def test_an_image_of_any_size_is_rebuilt_to_1e_5_of_its_contrast(height, width, scales, orientations):
     picture = image(height, width) - 50

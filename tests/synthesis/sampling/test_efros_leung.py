@@ -11,6 +11,7 @@ from scipy import ndimage
 from app.synthesis.parallel import Team
 from app.synthesis.sampling.efros_leung import border_share, efros_leung, growth_order, verbatim_share
 from app.synthesis.sampling.window_search import PatchSearch, gaussian_window
+from tests.profiles import examples
 
 
 def sample(height=20, width=23, channels=3, seed=0):
@@ -64,7 +65,7 @@ def test_each_pixel_is_as_near_as_the_tolerance_asks_among_all_given_what_was_th
         assert d[tuple(copied[y, x])] <= (1 + tolerance) * d.min() * (1 + 1e-12)
 
 
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(max_examples=examples(40))
 @given(st.tuples(*[st.integers(1, 20)] * 2), st.integers(1, 4), st.integers(1, 4), st.integers(0, 2**53 - 1))
 def test_every_pixel_is_a_sample_pixel_at_its_place_on_the_map_and_is_filled_once(size, channels, n, seed):
     h = sample(10, 12, channels)
