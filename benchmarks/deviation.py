@@ -15,10 +15,10 @@ from app.settings import ROOT
 from app.synthesis.parallel import Team, Work
 from app.synthesis.patchwork.cells import Cells, jittered_cells
 from app.synthesis.patchwork.patchwork import Patchwork
-from app.synthesis.patchwork.transfer import rescaled, transfer
+from app.synthesis.patchwork.transfer import rescale, transfer
 from app.synthesis.patchwork.transitions import Transitions
-from app.synthesis.patchwork.unbounded_cells import Reach, joined_cells
-from app.synthesis.patchwork.video_patchwork import Clip, VideoPatchwork
+from app.synthesis.patchwork.unbounded_cells import Reach, cells_with_reach
+from app.synthesis.patchwork.video_patchwork import PaddedClip, VideoPatchwork
 from benchmarks.kernel import THREADS
 from tests.synthesis.full_sums import patchwork_sum, transfer_sum
 
@@ -50,7 +50,7 @@ def patchworks(sharpness: float, tileable: bool) -> Made:
     expected = patchwork_sum(h, near, sources, tileable)
 
     def made(reach: Reach) -> tuple[Double, Double]:
-        work = Patchwork(h, joined_cells(near, reach, tileable=tileable), seed=1)
+        work = Patchwork(h, cells_with_reach(near, reach, tileable=tileable), seed=1)
         return work.rows(0, SIDE).transpose(1, 2, 0).astype(np.float64), expected
 
     return made
@@ -59,7 +59,7 @@ def patchworks(sharpness: float, tileable: bool) -> Made:
 def transfers(sharpness: float) -> Made:
     """The pavilion in leaves, and its sum. It depends on the reach, as the averages do not."""
     texture = crop("leaves_forest_floor", 0, 0, 512)
-    pattern = rescaled(crop("scene_china", 160, 100, PAINTED), texture)
+    pattern = rescale(crop("scene_china", 160, 100, PAINTED), texture)
     near = cells_of(PAINTED, PAINTED_GRID, sharpness, False)
     sums: list[Double] = []
 
@@ -84,9 +84,9 @@ def frames(sharpness: float, local: bool) -> Made:
     means = None if local else np.tile(mean.astype(np.float32), (near.count, 1))
 
     def made(reach: Reach) -> tuple[Double, Double]:
-        cells = joined_cells(near, reach, tileable=not local)
+        cells = cells_with_reach(near, reach, tileable=not local)
         transitions = Transitions(near.count, 6, 6, 2, loop=True, rng=np.random.default_rng(0))
-        work = VideoPatchwork(Clip(film, cells.margin(sources, 320, 320)), cells, sources, transitions, means)
+        work = VideoPatchwork(PaddedClip(film, cells.margin(sources, 320, 320)), cells, sources, transitions, means)
         return work.frame(3).astype(np.float64), total
 
     return made

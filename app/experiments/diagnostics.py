@@ -12,7 +12,7 @@ from app.images.crop import Rectangle, crop_to_centre
 from app.images.read import read_crop
 from app.images.video.reader import read_first_frame
 from app.methods.model import Picture, Progress, Source
-from app.synthesis.structure import delta_of
+from app.synthesis.structure import measure_delta
 
 DIGITS = 6  # of a number in the record
 
@@ -42,10 +42,10 @@ def diagnose(sources: Sequence[Source], staged: Sequence[tuple[Picture, Path]], 
     outputs: list[float | None] = []
     for source in sources:
         progress("structure", 0.92 + 0.06 * len(inputs) / total)
-        inputs.append(_rounded(delta_of(source.pixels)))
+        inputs.append(_rounded(measure_delta(source.pixels)))
     for picture, path in textures:
         progress("structure", 0.92 + 0.06 * (len(inputs) + len(outputs)) / total)
-        outputs.append(_rounded(delta_of(_pixels(picture, path))))
+        outputs.append(_rounded(measure_delta(_pixels(picture, path))))
     facts = [{"output": picture.name, **asdict(fact)} for picture, _ in staged for fact in picture.facts]
     return {"structure": {"inputs": inputs, "outputs": outputs}, "facts": facts}
 

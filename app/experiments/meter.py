@@ -11,7 +11,7 @@ from app.images.read import read_crop
 from app.images.stored_video import locate_crop
 from app.synthesis.arrays import Real
 from app.synthesis.luminance import luminance
-from app.synthesis.structure import LEAST, Structure, structure_index, too_small
+from app.synthesis.structure import LEAST, Structure, is_too_small, structure_index
 
 Verdict = Literal["micro-texture", "borderline", "structured", "unknown"]
 
@@ -94,7 +94,7 @@ class Meter:
         area = locate_crop(crop_to_centre((crop or whole).within(sample.width, sample.height)), frame, sample.height)
         small = sample.width * sample.height <= SMALL and not sample.transparent and not sample.moving
         found = self._measured(sample.digest, area, sigma, whole if small else None)
-        return Index(None, None) if too_small(area.height, area.width) else Index(found.delta, found.z)
+        return Index(None, None) if is_too_small(area.height, area.width) else Index(found.delta, found.z)
 
     def _measure(self, digest: str, area: Rectangle, sigma: float, whole: Rectangle | None) -> Structure:
         if whole is None:

@@ -13,11 +13,9 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from .arrays import Complex, Real
-
-Double = NDArray[np.float64]
+from .arrays import Complex, Double, Real
 
 
 def exp(x: ArrayLike) -> Double:

@@ -6,7 +6,7 @@ from concurrent.futures import ThreadPoolExecutor, wait
 from types import TracebackType
 from typing import TypeVar
 
-from .arrays import Progress
+from .arrays import PartDone, Progress
 
 T = TypeVar("T")
 
@@ -29,7 +29,7 @@ class Team:
     ) -> None:
         self._pool.shutdown(wait=True, cancel_futures=True)
 
-    def run(self, task: Callable[[T], object], items: Iterable[T], done: Callable[[float], None]) -> None:
+    def run(self, task: Callable[[T], object], items: Iterable[T], done: PartDone) -> None:
         """Call ``task(item)`` for every item in the pool, and ``done(part)`` in this thread, ``part`` going to 1.
 
         ``done`` is called at each item's end, and every now and then while one takes long.
@@ -56,7 +56,7 @@ class Work:
         self._team, self._progress, self.threads = team, progress, team.threads
         self._stopped = threading.Event()
 
-    def alive(self) -> None:
+    def checkpoint(self) -> None:
         """Raise if the work is to stop: for pieces of work to call between their steps."""
         if self._stopped.is_set():
             raise InterruptedError

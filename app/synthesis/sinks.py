@@ -4,15 +4,14 @@ import threading
 from collections.abc import Callable, Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .arrays import Real
+from .arrays import Pixels, Real
 
 Sink = Callable[[int, Iterable[Real]], None]
-Rows = Callable[[int, NDArray[np.unsignedinteger]], None]
+Rows = Callable[[int, Pixels], None]
 
 
-def into(texture: Real) -> Sink:
+def array_sink(texture: Real) -> Sink:
     """A sink that puts all it is handed into an array (height, width, C)."""
 
     def store(first: int, planes: Iterable[Real]) -> None:
@@ -63,7 +62,7 @@ class Levels:
         self._type = np.uint8 if peak == 255 else np.uint16
 
     def __call__(self, first: int, planes: Iterable[Real]) -> None:
-        pixels: NDArray[np.unsignedinteger] | None = None
+        pixels: Pixels | None = None
         for channel, plane in enumerate(planes):
             if self._scale != 1:
                 np.multiply(plane, self._scale, out=plane)

@@ -76,7 +76,7 @@ def structure_index(h: Real, sigma: float = SIGMA) -> Structure:
     -------
     Structure
         All 0 if the crop is constant, or has no contrast left at this scale: a constant is its own random phase
-        texture. The numbers are those of the formulas at any size; whether they mean anything, `too_small` says.
+        texture. The numbers are those of the formulas at any size; whether they mean anything, `is_too_small` says.
 
     Examples
     --------
@@ -96,18 +96,18 @@ def structure_index(h: Real, sigma: float = SIGMA) -> Structure:
     return Structure(lacking / found.mean, lacking / deviation, found.mean, found.total, deviation)
 
 
-def too_small(height: int, width: int) -> bool:
+def is_too_small(height: int, width: int) -> bool:
     """Whether a crop is too small for its δ to mean anything: one that has less than 32 pixels along a side.
 
     Examples
     --------
-    >>> too_small(1, 1), too_small(31, 500), too_small(32, 32)
+    >>> is_too_small(1, 1), is_too_small(31, 500), is_too_small(32, 32)
     (True, True, False)
     """
     return min(height, width) < LEAST
 
 
-def delta_of(h: Real, sigma: float = SIGMA) -> float | None:
+def measure_delta(h: Real, sigma: float = SIGMA) -> float | None:
     """δ_σ alone of a crop, or of the centre 1024 × 1024 pixels of one that is larger; a third of the work.
 
     Parameters
@@ -118,9 +118,9 @@ def delta_of(h: Real, sigma: float = SIGMA) -> float | None:
     Returns
     -------
     float or None
-        None for a crop that is `too_small`.
+        None for a crop that is `is_too_small`.
     """
-    if too_small(h.shape[0], h.shape[1]):
+    if is_too_small(h.shape[0], h.shape[1]):
         return None
     found = _Variation(centre(h, CENTRE, CENTRE), sigma)
     return 0.0 if found.flat else (found.mean - found.total) / found.mean

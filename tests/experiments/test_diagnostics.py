@@ -11,7 +11,7 @@ from app.experiments.preparation import NewExperiment, NewInput
 from app.experiments.service import Service
 from app.images.png_writer import encode_png
 from app.methods.model import Fact, Picture, Source
-from app.synthesis.structure import delta_of, structure_index
+from app.synthesis.structure import measure_delta, structure_index
 
 SECONDS = 30.0
 
@@ -61,7 +61,7 @@ def test_of_a_few_pixels_there_is_no_index(tmp_path: Path, size: tuple[int, int]
 def test_of_a_large_texture_the_same_centre_is_measured_as_of_an_array(tmp_path: Path) -> None:
     noise = np.random.default_rng(2).integers(0, 256, (1101, 1300, 1), dtype=np.uint8)
     (found,) = diagnose([], [staged(tmp_path, noise, kind="texture")], silent)["structure"]["outputs"]
-    assert found == pytest.approx(delta_of(noise.astype(np.float32)), abs=1e-6)
+    assert found == pytest.approx(measure_delta(noise.astype(np.float32)), abs=1e-6)
 
 
 def test_facts_are_kept_with_the_name_of_their_output(tmp_path: Path) -> None:

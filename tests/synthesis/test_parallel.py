@@ -39,7 +39,7 @@ def test_tasks_that_never_end_stop_when_the_progress_raises(threads):
     def task(item):
         begun.append(item)
         while True:
-            work.alive()
+            work.checkpoint()
 
     with Team(threads) as team:
         work = Work(team, progress)

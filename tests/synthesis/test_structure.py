@@ -11,7 +11,7 @@ from app.synthesis.fourier.periodic import periodic_component
 from app.synthesis.gaussian.adsn import adsn
 from app.synthesis.gaussian.rpn import rpn
 from app.synthesis.luminance import luminance
-from app.synthesis.structure import CENTRE, Structure, delta_of, structure_index, too_small
+from app.synthesis.structure import CENTRE, Structure, is_too_small, measure_delta, structure_index
 
 NOTHING = Structure(0, 0, 0, 0, 0)
 SAMPLES = {entry.id: entry for entry in bundled(ROOT / "samples")}
@@ -108,7 +108,7 @@ def test_every_number_is_that_of_the_formula_summed_pixel_by_pixel(size, sigma):
 def test_a_random_phase_texture_lies_at_nothing_whatever_it_was_made_from(name):
     """δ of a crop's random phase textures has a deviation of 0.003 at most here: 0.01 is three of them."""
     h = photograph(name)
-    assert max(abs(delta_of(rpn(h, seed=seed))) for seed in range(4)) < 0.01
+    assert max(abs(measure_delta(rpn(h, seed=seed))) for seed in range(4)) < 0.01
 
 
 @pytest.mark.parametrize(
@@ -121,7 +121,7 @@ def test_a_random_phase_texture_lies_at_nothing_whatever_it_was_made_from(name):
     ],
 )  # fmt: skip
 def test_grass_and_gravel_lie_low_bricks_and_cobbles_high_and_soil_is_a_false_alarm(name, low, high):
-    assert low < delta_of(photograph(name)) < high
+    assert low < measure_delta(photograph(name)) < high
 
 
 @pytest.mark.parametrize(("gain", "offset"), [(0.01, 0), (257, 0), (-1, 255), (1, -1e4)])
@@ -151,14 +151,14 @@ def test_it_does_not_depend_on_mirroring_or_on_which_axis_comes_first(turn):
 def test_a_constant_crop_is_its_own_random_phase_texture(value, shape):
     h = np.full(shape, value, np.float32)
     assert structure_index(h) == NOTHING
-    assert delta_of(h) == (0 if shape == (64, 63, 3) else None)
+    assert measure_delta(h) == (0 if shape == (64, 63, 3) else None)
 
 
 @pytest.mark.parametrize(("size", "known"), [((1, 1), 0), ((3, 1), 0), ((31, 32), 0), ((32, 31), 0), ((32, 32), 1)])
 def test_of_less_than_32_pixels_along_a_side_there_is_no_telling(size, known):
     h = image(*size)
-    assert too_small(*size) != known
-    assert delta_of(h) == (structure_index(h).delta if known else None)
+    assert is_too_small(*size) != known
+    assert measure_delta(h) == (structure_index(h).delta if known else None)
 
 
 def test_a_crop_without_contrast_at_the_scale_has_no_structure_there():
@@ -177,8 +177,8 @@ def test_the_smallest_crops_have_an_index_too(size, channels):
 def test_of_a_large_crop_the_centre_is_measured():
     h = image(40, CENTRE + 60, 1)
     h[:, :30], h[:, -30:] = 0, 999
-    assert delta_of(h) == pytest.approx(structure_index(h[:, 30:-30]).delta)
-    assert delta_of(h[:, :100]) == structure_index(h[:, :100]).delta
+    assert measure_delta(h) == pytest.approx(structure_index(h[:, 30:-30]).delta)
+    assert measure_delta(h[:, :100]) == structure_index(h[:, :100]).delta
 
 
 def test_colour_counts_by_its_luminance():

@@ -16,11 +16,11 @@ from app.methods.inputs import INPUTS, refuse_infinite
 from app.methods.model import Context, Fact, Method, Picture, Progress, Size, Source
 from app.methods.output.pictures import crops, encode
 from app.methods.params import WHOLE_IN_MEMORY
-from app.synthesis.arrays import Real
+from app.synthesis.arrays import Ints, Real
 from app.synthesis.fourier.spot import Spot
 from app.synthesis.fourier.spot_noise import sample_spot
 from app.synthesis.gaussian.adsn import adsn_of_spot
-from app.synthesis.gaussian.dsn import Counts, counts, dsn, excess_kurtosis, shape, standard_spot
+from app.synthesis.gaussian.dsn import counts, dsn, excess_kurtosis, spot_shape, standard_spot
 
 ORDERS = (10, 100, 1000, 10_000, 100_000)
 DEVIATIONS = 3  # of a standard spot's noise, from mid-grey to black and to white
@@ -104,7 +104,7 @@ def run(sources: Sequence[Source], params: DsnParams, context: Context) -> Itera
     if params.spot == "sample":
         yield encode("spot", "Spot", spot.rows(0, height).transpose(1, 2, 0), source.peak, context)
     else:
-        yield encode("spot", "Spot", shape(params.spot, height, width, params.radius), 1, context)
+        yield encode("spot", "Spot", spot_shape(params.spot, height, width, params.radius), 1, context)
     context.progress("points", 0.9)
     yield _points(counts(height, width, params.order, params.seed), context)
     context.progress("points", 1.0)
@@ -119,7 +119,7 @@ def idle(sizes: Sequence[Size], params: DsnParams) -> Mapping[str, str]:
     return dict.fromkeys(("alpha", "window"), words)
 
 
-def _points(drawn: Counts, context: Context) -> Picture:
+def _points(drawn: Ints, context: Context) -> Picture:
     """The least count as black and the greatest as white."""
     least, greatest = int(drawn.min()), int(drawn.max())
     facts = (

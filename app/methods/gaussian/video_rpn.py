@@ -15,7 +15,7 @@ from app.methods.output.films import crop_film, film_memory, texture_film
 from app.methods.output.pictures import encode, log_modulus
 from app.methods.params import MovingParams
 from app.synthesis.arrays import Real
-from app.synthesis.gaussian.video_rpn import MovingField
+from app.synthesis.gaussian.video_rpn import VideoNoiseField
 from app.synthesis.parallel import Team
 
 CUBES = ("crop-cube", "cube")
@@ -59,7 +59,7 @@ def run(sources: Sequence[Source], params: VideoRpnParams, context: Context) -> 
     film = source.film.frames
     shape = _shape(source.size, params)
     with Team(context.threads) as team:
-        field = MovingField(
+        field = VideoNoiseField(
             film,
             shape,
             seed=params.seed,
@@ -83,13 +83,13 @@ def run(sources: Sequence[Source], params: VideoRpnParams, context: Context) -> 
     context.progress("crop", 1.0)
 
 
-def _reported(field: MovingField, progress: Progress) -> Iterator[Real]:
+def _reported(field: VideoNoiseField, progress: Progress) -> Iterator[Real]:
     for index, frame in enumerate(field.frames()):
         progress("texture", index / field.shape[0])
         yield frame
 
 
-def _views(film: NDArray[np.uint8], field: MovingField, context: Context) -> Iterator[Picture]:
+def _views(film: NDArray[np.uint8], field: VideoNoiseField, context: Context) -> Iterator[Picture]:
     """The average frame, and two sections through the block of the squared moduli."""
     context.progress("spectrum", 0.7)
     still = Fact("still", "Part of the texture's contrast that stands still", 100 * field.still, "% of the variance")

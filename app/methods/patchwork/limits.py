@@ -12,7 +12,7 @@ from app.methods.params import ADVANCED, StillParams
 from app.synthesis.patchwork.cell_match import HALF
 from app.synthesis.patchwork.cell_shapes import reach as near_reach
 from app.synthesis.patchwork.cells import LEFT_OUT, SLACK
-from app.synthesis.patchwork.unbounded_cells import ENDS, Reach, span, table_bytes, terms
+from app.synthesis.patchwork.unbounded_cells import ENDS, Reach, count_terms, span, table_bytes
 
 LEAST_GRID = 4
 BYTES_OF_CELL = 1000  # while cells are laid out
@@ -72,7 +72,7 @@ def refuse_long_sum(params: Joining, height: int, width: int, *, tileable: bool)
     InvalidInputError
         At ``parameters.reach``.
     """
-    products = terms(height, width, params.grid, params.sharpness, tileable)
+    products = count_terms(height, width, params.grid, params.sharpness, tileable)
     if summed(params) and products > MOST_TERMS:
         raise _too_long(products, f"{width} × {height} pixels", height * width)
 

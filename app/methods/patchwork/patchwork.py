@@ -29,8 +29,8 @@ from app.methods.patchwork.pictures import cell_colours
 from app.synthesis.arrays import Real
 from app.synthesis.parallel import Team, Work, row_blocks
 from app.synthesis.patchwork.cells import Cells, jittered_cells, least_sample
-from app.synthesis.patchwork.patchwork import BAND, TILE, Patchwork, band, painted
-from app.synthesis.patchwork.unbounded_cells import Reach, joined_cells
+from app.synthesis.patchwork.patchwork import BAND, TILE, Patchwork, band_rows, paint_cells
+from app.synthesis.patchwork.unbounded_cells import Reach, cells_with_reach
 from app.synthesis.sinks import Levels
 
 BANDS = 4  # that are in work at once
@@ -104,7 +104,7 @@ def run(sources: Sequence[Source], params: PatchworkParams, context: Context) ->
         height, width, grid=params.grid, sharpness=params.sharpness, tileable=params.tileable, seed=params.seed
     )
     context.progress("patches", 0.08)
-    cells = joined_cells(cells, "all" if summed(params) else "near", tileable=params.tileable)
+    cells = cells_with_reach(cells, "all" if summed(params) else "near", tileable=params.tileable)
     made = Patchwork(h, cells, blend=params.blend, seed=params.seed)
     sources_of = made.sources
     with Team(context.threads) as team:
@@ -113,8 +113,8 @@ def run(sources: Sequence[Source], params: PatchworkParams, context: Context) ->
             writer = PngWriter(width, height, channels, context.depth)
             levels = Levels(writer.write, channels, 0, peak, 2**context.depth - 1)
             work = Work(team, progress)
-            blocks = row_blocks(height, band(cells))
-            work.run("texture", lambda block: levels(block[0], rows(*block, work.alive)), blocks)
+            blocks = row_blocks(height, band_rows(cells))
+            work.run("texture", lambda block: levels(block[0], rows(*block, work.checkpoint)), blocks)
             return writer.finish()
 
         png = streamed(made.rows, h.shape[2], source.peak, context.between(0.1, 0.6))
@@ -126,8 +126,8 @@ def run(sources: Sequence[Source], params: PatchworkParams, context: Context) ->
         colours = cell_colours(cells, sources_of, places)
         soft = params.blend != "sharp"
 
-        def paint(top: int, bottom: int, alive: Callable[[], None]) -> Real:
-            return painted(cells, colours, top, bottom, soft=soft, alive=alive)
+        def paint(top: int, bottom: int, checkpoint: Callable[[], None]) -> Real:
+            return paint_cells(cells, colours, top, bottom, soft=soft, checkpoint=checkpoint)
 
         png = streamed(paint, 3, 1, lambda stage, part: context.progress("views", 0.6 + 0.3 * part))
         yield Picture("cells", "Cells, coloured by the place of their source", width, height, png)

@@ -19,7 +19,7 @@ from app.methods.patchwork.limits import Reached
 from app.synthesis.arrays import Real
 from app.synthesis.patchwork.best_places import Matches
 from app.synthesis.patchwork.cells import Cells, Window
-from app.synthesis.patchwork.video_patchwork import in_order
+from app.synthesis.patchwork.video_patchwork import frames_in_order
 
 Painter = Callable[[Window], Callable[[int], Real]]  # of a window, then of a frame
 
@@ -88,7 +88,7 @@ def textured(
     """
     assert source.film is not None
     frames, height, width = shape
-    made = in_order(frame, frames, context.threads, lambda part: context.progress("frames", 0.02 + 0.76 * part))
+    made = frames_in_order(frame, frames, context.threads, lambda part: context.progress("frames", 0.02 + 0.76 * part))
     yield from texture_film(
         made,
         width=width,

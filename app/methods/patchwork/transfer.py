@@ -29,9 +29,9 @@ from app.methods.patchwork.limits import (
 from app.methods.patchwork.pictures import cell_colours, compared_pattern, match_facts
 from app.synthesis.parallel import Team, Work, row_blocks
 from app.synthesis.patchwork.cells import jittered_cells, least_sample
-from app.synthesis.patchwork.patchwork import painted
-from app.synthesis.patchwork.transfer import rescaled, transfer
-from app.synthesis.patchwork.unbounded_cells import Reach, joined_cells
+from app.synthesis.patchwork.patchwork import paint_cells
+from app.synthesis.patchwork.transfer import rescale, transfer
+from app.synthesis.patchwork.unbounded_cells import Reach, cells_with_reach
 
 BYTES_OF_PATTERN = 8  # for each value, beside the search
 STAGES = {"matching": (0.05, 0.7), "averages": (0.7, 0.78), "texture": (0.78, 0.88)}
@@ -103,7 +103,7 @@ def run(sources: Sequence[Source], params: TransferParams, context: Context) -> 
         height, width, grid=params.grid, sharpness=params.sharpness, tileable=False, seed=params.seed
     )
     if params.rescale:
-        pattern = rescaled(pattern, texture)
+        pattern = rescale(pattern, texture)
     with Team(context.threads) as team:
         made = transfer(
             texture,
@@ -120,11 +120,11 @@ def run(sources: Sequence[Source], params: TransferParams, context: Context) -> 
         context.progress("cells", 0.9)
         colours = cell_colours(cells, made.matches.places, coordinate_colours(*texture.shape[:2]))
         picture = np.empty((height, width, 3), np.float32)
-        joined = joined_cells(cells, params.reach, tileable=False)
+        joined = cells_with_reach(cells, params.reach, tileable=False)
         work = Work(team, context.between(0.9, 0.95))
 
         def paint(rows: tuple[int, int]) -> None:
-            picture[slice(*rows)] = painted(joined, colours, *rows, alive=work.alive).transpose(1, 2, 0)
+            picture[slice(*rows)] = paint_cells(joined, colours, *rows, checkpoint=work.checkpoint).transpose(1, 2, 0)
 
         work.run("cells", paint, row_blocks(height))
     yield encode("cells", "Cells, coloured by the place of their source", picture, 1, context)

@@ -37,12 +37,12 @@ from app.methods.patchwork.pictures import (
     textured,
 )
 from app.synthesis.arrays import Real
-from app.synthesis.patchwork.cells import jittered_cells, least_sample, random
+from app.synthesis.patchwork.cells import jittered_cells, least_sample, random_numbers
 from app.synthesis.patchwork.transitions import Transitions, longest_interval
-from app.synthesis.patchwork.unbounded_cells import Reach, joined_cells, terms
+from app.synthesis.patchwork.unbounded_cells import Reach, cells_with_reach, count_terms
 from app.synthesis.patchwork.video_cells import FixedCells, source_colours
-from app.synthesis.patchwork.video_mosaic import Mosaic, held_bytes, needed, products
-from app.synthesis.patchwork.video_patchwork import Clip, VideoPatchwork
+from app.synthesis.patchwork.video_mosaic import VideoMosaic, count_mosaic_terms, least_length, tile_bytes
+from app.synthesis.patchwork.video_patchwork import PaddedClip, VideoPatchwork
 
 
 class VideoPatchworkParams(SeamlessParams):
@@ -72,17 +72,17 @@ def check(sizes: Sequence[Size], params: VideoPatchworkParams) -> None:
     """Refuse a crop or a clip that does not hold the patches."""
     size, (frames, height, width) = sizes[0], _shape(sizes[0], params)
     if params.arrangement == "mosaic":
-        refuse_small(size, params.grid, lambda grid: (needed(width, grid), needed(height, grid)))
-        most = next(interval for interval in range(frames, 0, -1) if needed(frames, interval) <= size.frames)
+        refuse_small(size, params.grid, lambda grid: (least_length(width, grid), least_length(height, grid)))
+        most = next(interval for interval in range(frames, 0, -1) if least_length(frames, interval) <= size.frames)
     else:
         refuse_small(size, params.grid, lambda grid: (least_sample(height, width, grid, params.sharpness),) * 2)
         most = longest_interval(size.frames, frames, params.loop)
     refuse_short(size, frames, params.interval, most)
     if summed(params):
         if params.arrangement == "mosaic":
-            work = products((frames, height, width), params.grid, params.interval)
+            work = count_mosaic_terms((frames, height, width), params.grid, params.interval)
         else:
-            work = terms(height, width, params.grid, params.sharpness, params.tileable)
+            work = count_terms(height, width, params.grid, params.sharpness, params.tileable)
         refuse_long_frames(work, height, width, frames)
 
 
@@ -91,7 +91,7 @@ def memory(sizes: Sequence[Size], params: VideoPatchworkParams) -> int:
     size, (_, height, width) = sizes[0], _shape(sizes[0], params)
     if params.arrangement == "fixed":
         return patchwork_bytes(size, Reached(params, height, width, params.tileable))
-    return 2 * film_bytes(size) + held_bytes(height, width) + frames_bytes(size, height, width)
+    return 2 * film_bytes(size) + tile_bytes(height, width) + frames_bytes(size, height, width)
 
 
 def run(sources: Sequence[Source], params: VideoPatchworkParams, context: Context) -> Iterator[Picture]:
@@ -122,33 +122,33 @@ def _fixed(
         height, width, grid=params.grid, sharpness=params.sharpness, tileable=params.tileable, seed=params.seed
     )
     sources = cells.sources(film.shape[1], film.shape[2], params.seed)
-    cells = joined_cells(cells, params.reach, tileable=params.tileable)
+    cells = cells_with_reach(cells, params.reach, tileable=params.tileable)
     transitions = Transitions(
-        cells.count, len(film), frames, params.interval, loop=params.loop, rng=random(params.seed, IN_TIME)
+        cells.count, len(film), frames, params.interval, loop=params.loop, rng=random_numbers(params.seed, IN_TIME)
     )
-    clip = Clip(film, cells.margin(sources, film.shape[1], film.shape[2]))
+    clip = PaddedClip(film, cells.margin(sources, film.shape[1], film.shape[2]))
     mean = film.mean((0, 1, 2), np.float64).astype(np.float32)
     made = VideoPatchwork(clip, cells, sources, transitions, np.tile(mean, (cells.count, 1)))
-    return made.frame, lambda window: FixedCells(cells, window, sources, transitions, film.shape[:3]).painted
+    return made.frame, lambda window: FixedCells(cells, window, sources, transitions, film.shape[:3]).paint
 
 
 def _mosaic(
     film: NDArray[np.uint8], shape: tuple[int, int, int], params: VideoPatchworkParams
 ) -> tuple[Callable[[int], Real], Painter]:
     """The three-dimensional mosaic: what makes a frame, and what paints its cells."""
-    mosaic = Mosaic(
-        Clip(film).planes,
+    mosaic = VideoMosaic(
+        PaddedClip(film).planes,
         shape,
         grid=params.grid,
         interval=params.interval,
         sharpness=params.sharpness,
         loop=params.loop,
         tileable=params.tileable,
-        rng=random(params.seed, IN_TIME),
+        rng=random_numbers(params.seed, IN_TIME),
         reach=params.reach,
     )
     colours = source_colours(mosaic.sources, film.shape[:3])
-    return mosaic.frame, lambda window: lambda number: mosaic.painted(number, window, colours)
+    return mosaic.frame, lambda window: lambda number: mosaic.paint(number, window, colours)
 
 
 VIDEO_PATCHWORK = Method(

@@ -44,12 +44,12 @@ from app.synthesis.arrays import Real
 from app.synthesis.luminance import luminance
 from app.synthesis.parallel import Team, Work
 from app.synthesis.patchwork.cell_match import match_cells
-from app.synthesis.patchwork.cells import Cells, jittered_cells, least_sample, random
-from app.synthesis.patchwork.transfer import rescaled
+from app.synthesis.patchwork.cells import Cells, jittered_cells, least_sample, random_numbers
+from app.synthesis.patchwork.transfer import rescale
 from app.synthesis.patchwork.transitions import Transitions, longest_interval
-from app.synthesis.patchwork.unbounded_cells import Reach, joined_cells, terms
+from app.synthesis.patchwork.unbounded_cells import Reach, cells_with_reach, count_terms
 from app.synthesis.patchwork.video_cells import FixedCells
-from app.synthesis.patchwork.video_patchwork import Clip, VideoPatchwork
+from app.synthesis.patchwork.video_patchwork import PaddedClip, VideoPatchwork
 
 PEAK = 255  # of a clip's values
 
@@ -88,7 +88,9 @@ def check(sizes: Sequence[Size], params: VideoTransferParams) -> None:
     refuse_short(clip, frames, params.interval, longest_interval(clip.frames, frames, params.loop))
     refuse_long_search(clip, pattern, params.grid, params.candidates)
     if summed(params):
-        refuse_long_frames(terms(height, width, params.grid, params.sharpness, tileable=False), height, width, frames)
+        refuse_long_frames(
+            count_terms(height, width, params.grid, params.sharpness, tileable=False), height, width, frames
+        )
 
 
 def memory(sizes: Sequence[Size], params: VideoTransferParams) -> int:
@@ -111,17 +113,17 @@ def run(sources: Sequence[Source], params: VideoTransferParams, context: Context
     average = film.mean(0, np.float32)
     wanted = _with_channels(pattern.pixels * np.float32(PEAK / pattern.peak), average.shape[2])
     if params.rescale:
-        wanted = rescaled(wanted, average)
+        wanted = rescale(wanted, average)
     places = _matched(average, wanted, cells, params, replace(context, progress=context.between(0, 0.2)))
     transitions = Transitions(
-        cells.count, len(film), shape[0], params.interval, loop=params.loop, rng=random(params.seed, IN_TIME)
+        cells.count, len(film), shape[0], params.interval, loop=params.loop, rng=random_numbers(params.seed, IN_TIME)
     )
-    cells = joined_cells(cells, params.reach, tileable=False)
+    cells = cells_with_reach(cells, params.reach, tileable=False)
     margin = cells.margin(places, *film.shape[1:3])
-    made = VideoPatchwork(Clip(film, margin), cells, places, transitions)
+    made = VideoPatchwork(PaddedClip(film, margin), cells, places, transitions)
     yield from textured(made.frame, shape, clip, replace(context, progress=context.between(0.2, 0.86)))
     yield cells_cube(
-        lambda window: FixedCells(cells, window, places, transitions, film.shape[:3]).painted,
+        lambda window: FixedCells(cells, window, places, transitions, film.shape[:3]).paint,
         shape,
         replace(context, progress=context.between(0.86, 0.9)),
     )

@@ -19,7 +19,7 @@ from app.methods.pyramid.sub_bands import mosaic
 from app.synthesis.arrays import Real
 from app.synthesis.fourier.periodic import smooth_planes
 from app.synthesis.parallel import Team, Work
-from app.synthesis.pyramid.heeger_bergen import Decomposition, Sample, Synthesis
+from app.synthesis.pyramid.heeger_bergen import Decomposition, SampleStatistics, Synthesis
 from app.synthesis.pyramid.pyramid import SteerablePyramid
 
 VIEW = 512  # pixels of a side of the views of iterations, at most
@@ -115,7 +115,7 @@ def run(sources: Sequence[Source], params: HeegerBergenParams, context: Context)
     views = {}
     with Team(context.threads) as team:
         work = Work(team, lambda stage, part: context.between(begins[stage], ends[stage])(stage, part))
-        sample = Sample(source.pixels, decomposition, pyramid, work)
+        sample = SampleStatistics(source.pixels, decomposition, pyramid, work)
         synthesis = Synthesis(sample, pyramid, params.seed, work)
         views["noise", "Noise with the crop's histogram"] = synthesis.planes(VIEW)
         for number in range(1, params.iterations + 1):
@@ -152,7 +152,7 @@ def _pixels(planes: Real) -> Real:
     return planes.transpose(1, 2, 0)
 
 
-def _shares(sample: Sample) -> tuple[Fact, ...]:
+def _shares(sample: SampleStatistics) -> tuple[Fact, ...]:
     """How the variance is shared out over the principal components."""
     variances = sample.space.variances
     shares = 100 * variances / (variances.sum() or 1)

@@ -4,7 +4,7 @@ import numpy as np
 
 from app.methods.model import Progress
 from app.synthesis.arrays import Real
-from app.synthesis.pyramid.heeger_bergen import Channel, Decomposition
+from app.synthesis.pyramid.heeger_bergen import ChannelBands, Decomposition
 from app.synthesis.pyramid.pyramid import Band
 
 CELL = 256  # pixels of a side of what is shown of a sub-band, at most
@@ -17,7 +17,7 @@ def mosaic(plane: Real, decomposition: Decomposition, progress: Progress) -> Rea
     Coarse bands are enlarged to the image's scale. Mid-grey is a band's mean, black and white are three deviations
     from it.
     """
-    channel, scales = Channel(plane, decomposition), range(decomposition.scales)
+    channel, scales = ChannelBands(plane, decomposition), range(decomposition.scales)
     rows = [[Band(scale, number) for number in range(decomposition.orientations)] for scale in scales]
     rows.append([Band(0, None), Band(decomposition.scales, None)])
     high, wide = (min(side, CELL) + GAP for side in plane.shape)

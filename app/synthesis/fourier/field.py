@@ -16,9 +16,9 @@ from typing import Literal, TypedDict
 import numpy as np
 import scipy.fft
 
-from ..arrays import Complex, Progress, Real
+from ..arrays import Complex, Progress, Real, ignore_progress
 from ..parallel import Team, row_blocks
-from ..sinks import Sink, into
+from ..sinks import Sink, array_sink
 from .periodic import SmoothSpectrum, periodic_planes
 from .spectral import Block, Draw, column_blocks, random_bits
 from .spot import Profile, centre, make_spot
@@ -81,7 +81,7 @@ class NoiseField:
             raise ValueError("The smooth component can be added only where it was taken out before.")
         self.noise = noise
         self._team = team
-        self._progress = progress or (lambda stage, part: None)
+        self._progress = progress or ignore_progress
         self._progress("spot", 0)
         self._grey = h.ndim == 2
         if self._grey:
@@ -164,7 +164,7 @@ class NoiseField:
                 spectrum += smooth
             yield spectrum
 
-    def room(self) -> Complex:
+    def buffer(self) -> Complex:
         """An array for columns that are done, (C, height, width // 2 + 1): the field's own, if it is large enough."""
         if self._spectrum.shape[1] == self.noise.height:
             return self._spectrum
@@ -172,7 +172,7 @@ class NoiseField:
 
     def randomise(self) -> "NoiseField":
         """Transform the columns with the random spectrum; once, before `emit`."""
-        noise, done = self.noise, self.room()
+        noise, done = self.noise, self.buffer()
 
         def transform(block: Block) -> None:
             columns = slice(*block)
@@ -222,7 +222,7 @@ class NoiseField:
     def array(self) -> Real:
         """The texture as one array, shape (height, width), or (height, width, C) if the sample has three axes."""
         texture = np.empty((self.noise.height, self.noise.width, len(self.mean)), np.float32)
-        self.randomise().emit(into(texture))
+        self.randomise().emit(array_sink(texture))
         return texture[:, :, 0] if self._grey else texture
 
     def _planes(self, begin: int, end: int) -> Iterator[Real]:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.random import SFC64, SeedSequence
 from numpy.typing import NDArray
 
-from ..arrays import Complex, Real
+from ..arrays import Bytes, Complex, Real
 from ..elementary import log10
 
 STATES = 1 << 16  # values that a 16-bit word takes, and so phases that are drawn from
@@ -136,7 +136,7 @@ class LogModulus:
         away = (power[:1, 1:].max(initial=0), power[1:].max(initial=0), np.finfo(np.float32).tiny)
         self._greatest = np.float32(max(away))
 
-    def rows(self, first: int, last: int) -> NDArray[np.uint8]:
+    def rows(self, first: int, last: int) -> Bytes:
         """Rows ``first`` to ``last`` − 1, shape (last − first, width)."""
         power, width, greatest = self._power, self._width, self._greatest
         height = len(power)
@@ -146,5 +146,5 @@ class LogModulus:
         if first <= height // 2 < last:
             whole[height // 2 - first, width // 2] = 1
         decades = log10(np.maximum(whole, np.float32(10 ** (-2 * DECADES)))) / 2
-        grey: NDArray[np.uint8] = (255.5 + 255 / DECADES * decades).clip(0, 255).astype(np.uint8)
+        grey: Bytes = (255.5 + 255 / DECADES * decades).clip(0, 255).astype(np.uint8)
         return grey

@@ -23,16 +23,15 @@ from functools import lru_cache
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arrays import Real
+from ..arrays import Double, Real
 from ..elementary import exp
 
 Profile = Literal["bump", "gaussian"]
 
 
 @lru_cache(maxsize=64)
-def window(n: int, alpha: float, profile: Profile = "bump") -> NDArray[np.float64]:
+def window(n: int, alpha: float, profile: Profile = "bump") -> Double:
     """Sample the smooth transition φ_α at the n points t = (i + ½) / n, mean square 1.
 
     φ_α rises on [0, α], is constant on [α, 1 − α] and falls as it rose. On [0, α] it is
@@ -92,7 +91,7 @@ class Spot:
     """
 
     planes: Real
-    mean: NDArray[np.float64]
+    mean: Double
     height: int
     width: int
 
@@ -118,16 +117,16 @@ class Spot:
         return rows
 
 
-def variances(planes: Real, area: int) -> NDArray[np.float64]:
+def variances(planes: Real, area: int) -> Double:
     """Variance of every channel of planes (C, M, N) that lie in an image of ``area`` pixels, 0 around them; (C,)."""
     # A row is short enough for single precision; all of them are not.
     squares = np.einsum("cyx,cyx->cy", planes, planes).sum(axis=1, dtype=np.float64)
     sums = planes.sum(axis=2).sum(axis=1, dtype=np.float64)
-    found: NDArray[np.float64] = squares / area - (sums / area) ** 2
+    found: Double = squares / area - (sums / area) ** 2
     return found
 
 
-def make_spot(p: Real, mean: NDArray[np.float64], height: int, width: int, alpha: float, profile: Profile) -> Spot:
+def make_spot(p: Real, mean: Double, height: int, width: int, alpha: float, profile: Profile) -> Spot:
     """`extend_spot` from planes (C, M₁, N₁), which it changes, and without the constant around."""
     high, wide = p.shape[1:]
     p -= mean.astype(np.float32)[:, None, None]
@@ -148,9 +147,7 @@ def fade(p: Real, height: int, width: int, alpha: float, profile: Profile) -> No
         p *= window(wide, alpha, profile).astype(np.float32)
 
 
-def extend_spot(
-    p: Real, mean: NDArray[np.float64], height: int, width: int, alpha: float = 0.1, profile: Profile = "bump"
-) -> Real:
+def extend_spot(p: Real, mean: Double, height: int, width: int, alpha: float = 0.1, profile: Profile = "bump") -> Real:
     """Extend a periodic component to the spot h̃ of a larger noise.
 
     An axis that is not extended is not attenuated, and without an extension h̃ is p. The variance of h̃, the mean over

@@ -36,15 +36,12 @@ from math import ceil, hypot, inf, sqrt
 
 import numpy as np
 import scipy.fft
-from numpy.typing import NDArray
 from scipy.fft import next_fast_len
 
-from ..arrays import Complex, Progress, Real
+from ..arrays import Complex, Double, Ints, Progress, Real
 from ..fourier.periodic import periodic_planes
 from ..fourier.spot import Spot
 from ..pyramid.colour_space import ColourSpace
-
-Matrix = NDArray[np.float64]
 
 REACH = 4  # times K, of the covariances that the cut kernel is the root of; see benchmarks/README.md
 NOTHING = 1e-10  # of the greatest variance: axes of colours with less hold rounding
@@ -70,7 +67,7 @@ class CutTexton:
 
 def cut_texton(
     h: Real,
-    mean: NDArray[np.float64],
+    mean: Double,
     height: int,
     width: int,
     cut: int,
@@ -107,7 +104,7 @@ def cut_texton(
     [(3, 1, 1), (3, 1, 1), (3, 1, 1)]
     """
     p = _centred(h, threads)
-    colours = ColourSpace.of(p)
+    colours = ColourSpace.from_planes(p)
     used = max(1, int((colours.variances > NOTHING * colours.variances[0]).sum()))
     axes = colours.axes[:used]
     p = np.stack([sum(np.float32(part) * plane for part, plane in zip(axis, p, strict=True)) for axis in axes])
@@ -158,7 +155,7 @@ def lag_error(h: Real, spots: Sequence[Spot], threads: int = 1) -> tuple[float, 
     sums = [spot.planes.sum(axis=(1, 2), dtype=np.float64) / area for spot in spots]
     there, lags = [], []
     for side, reach, period, whole in zip(size, kernel, torus, texture, strict=True):
-        lag = around(side, side)
+        lag = centred_places(side, side)
         lag = lag if period == whole else lag[np.abs(lag) < reach]
         there.append(lag % side)
         lags.append(lag % period)
@@ -191,7 +188,7 @@ def _spectra(p: Real, threads: int) -> Complex:
     return spectra
 
 
-def around(side: int, cut: int) -> NDArray[np.int64]:
+def centred_places(side: int, cut: int) -> Ints:
     """Where, from the origin of a torus, the ``cut`` pixels lie whose middle is the origin."""
     count = min(cut, side)
     return np.arange(count) - count // 2
@@ -210,7 +207,7 @@ def _root(spectra: Complex, size: Sequence[int], cut: int, threads: int, progres
         side if 2 * reach >= side else next_fast_len(2 * ceil(reach)) for side, reach in zip(size, reaches, strict=True)
     ]
     grid = [min(each) for each in zip(grid, size, strict=True)]
-    lags = [around(side, side) for side in grid]
+    lags = [centred_places(side, side) for side in grid]
     down, across = (
         np.maximum(1 - np.abs(lag) / reach, 0).astype(np.float32) for lag, reach in zip(lags, reaches, strict=True)
     )
@@ -234,9 +231,9 @@ def _root(spectra: Complex, size: Sequence[int], cut: int, threads: int, progres
     return kernel
 
 
-def _square(size: Sequence[int], cut: int) -> tuple[NDArray[np.int64], ...]:
+def _square(size: Sequence[int], cut: int) -> tuple[Ints, ...]:
     """Index of the pixels around the origin of a torus."""
-    return np.ix_(*(around(side, cut) for side in size))
+    return np.ix_(*(centred_places(side, cut) for side in size))
 
 
 def _say(progress: Progress | None, part: float) -> None:
@@ -244,22 +241,22 @@ def _say(progress: Progress | None, part: float) -> None:
         progress("texton", part)
 
 
-def _covariance(kernel: Real, area: int) -> Matrix:
+def _covariance(kernel: Real, area: int) -> Double:
     """Of the colours of a kernel's texture of ``area`` pixels, whose mean is the sample's: (C, C)."""
     sums = kernel.sum(axis=(2, 3), dtype=np.float64) / area
-    found: Matrix = np.einsum("ajyx,bjyx->ab", kernel, kernel, dtype=np.float64) / area - sums @ sums.T
+    found: Double = np.einsum("ajyx,bjyx->ab", kernel, kernel, dtype=np.float64) / area - sums @ sums.T
     return found
 
 
-def _transport(have: Matrix, wanted: Matrix) -> Matrix:
+def _transport(have: Double, wanted: Double) -> Double:
     """The symmetric R with R have Rᵀ = wanted: the optimal transport between Gaussian laws of these covariances."""
     root, inverse = _roots(have)
     middle, _ = _roots(root @ wanted @ root)
-    factor: Matrix = inverse @ middle @ inverse
+    factor: Double = inverse @ middle @ inverse
     return factor
 
 
-def _roots(symmetric: Matrix) -> tuple[Matrix, Matrix]:
+def _roots(symmetric: Double) -> tuple[Double, Double]:
     """The root of a covariance and its inverse, which is 0 along axes that hold nothing at all."""
     values, axes = np.linalg.eigh(symmetric)
     there = values > ROUNDING * max(values[-1], 0)

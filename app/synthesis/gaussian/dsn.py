@@ -20,18 +20,16 @@ from numpy.random import SFC64, Generator, SeedSequence
 from numpy.typing import NDArray
 from scipy.special import pdtr
 
-from ..arrays import Progress, Real
+from ..arrays import Double, Ints, Progress, Real
 from ..fourier.spectral import STATES
 from ..fourier.spot import Spot
 from ..fourier.spot_noise import convolve
-
-Counts = NDArray[np.int64]
 
 POINTS = 100_000  # that are drawn one by one
 DEVIATIONS = 12  # of a Poisson variable: it goes further with a chance of 1e-32
 
 
-def counts(height: int, width: int, order: int, seed: int) -> Counts:
+def counts(height: int, width: int, order: int, seed: int) -> Ints:
     """How many of ``order`` independent uniform points of the torus fall on each pixel: a multinomial variable.
 
     The first 100,000 points are drawn one by one, so that those of a smaller order are among those of a greater
@@ -63,7 +61,7 @@ def counts(height: int, width: int, order: int, seed: int) -> Counts:
     mean = max(0.0, order - POINTS - DEVIATIONS * np.sqrt(order)) / pixels
     many = _poisson(rest, mean, pixels) if mean else None
     single = order if many is None else order - int(many.sum(dtype=np.int64))
-    drawn: Counts = np.bincount(points.integers(pixels, size=single), minlength=pixels)
+    drawn: Ints = np.bincount(points.integers(pixels, size=single), minlength=pixels)
     if many is not None:
         drawn += many
     return drawn.reshape(height, width)
@@ -135,7 +133,7 @@ def dsn(spot: Spot, order: int, *, seed: int = 0, threads: int = 1, progress: Pr
     return convolve([spot], [spectrum], threads, progress, begin=0.3)
 
 
-def shape(kind: Literal["disc", "gaussian"], height: int, width: int, radius: float) -> Real:
+def spot_shape(kind: Literal["disc", "gaussian"], height: int, width: int, radius: float) -> Real:
     """A spot that needs no sample, in the middle of the image, with values from 0 to 1.
 
     Parameters
@@ -159,14 +157,14 @@ def shape(kind: Literal["disc", "gaussian"], height: int, width: int, radius: fl
 def standard_spot(
     kind: Literal["disc", "gaussian"], height: int, width: int, radius: float, mean: float, deviation: float
 ) -> Spot:
-    """`shape`, mapped to a given mean and standard deviation, so that every noise of it has these too.
+    """`spot_shape`, mapped to a given mean and standard deviation, so that every noise of it has these too.
 
     Raises
     ------
     ValueError
         If the shape covers the whole image and so has no deviation.
     """
-    values = shape(kind, height, width, radius)
+    values = spot_shape(kind, height, width, radius)
     values -= values.mean(dtype=np.float64)
     found = values.std(dtype=np.float64)
     if found == 0:
@@ -175,7 +173,7 @@ def standard_spot(
     return Spot(values[None], np.array([mean]), height, width)
 
 
-def excess_kurtosis(spot: Spot) -> NDArray[np.float64]:
+def excess_kurtosis(spot: Spot) -> Double:
     """Excess kurtosis of the spot's values over the whole torus, shape (C,): a pixel of the DSN has 1/n of it.
 
     0 for a spot without contrast.

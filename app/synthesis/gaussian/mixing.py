@@ -31,12 +31,12 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import scipy.fft
 
-from ..arrays import Complex, Progress, Real
+from ..arrays import Complex, Progress, Real, ignore_progress
 from ..fourier.field import Noise, NoiseField
 from ..fourier.spectral import column_blocks
 from ..fourier.spot import Profile
 from ..parallel import Team, row_blocks
-from ..sinks import Sink, into
+from ..sinks import Sink, array_sink
 from .adsn import white_noise
 
 SEARCH, SWEEPS = 5, 12  # over the phases: from every start, and then from the best one
@@ -76,7 +76,7 @@ class Mixture:
             for number, sample in enumerate(samples)
         ]
         self._means = [field.mean for field in fields]
-        self._columns = [field.room() for field in fields]
+        self._columns = [field.buffer() for field in fields]
 
         def transform(block: tuple[int, int]) -> None:
             random = fields[0].random(block)
@@ -234,6 +234,6 @@ def mix(
     texture = np.empty((height, width, samples[0].shape[2]), np.float32)
     noise = Noise(white_noise, height, width, seed=seed, alpha=alpha, window=window)
     with Team(threads) as team:
-        mixture = Mixture(samples, list(shares), noise, team, progress or (lambda stage, part: None))
-        mixture.emit(list(shares), into(texture))
+        mixture = Mixture(samples, list(shares), noise, team, progress or ignore_progress)
+        mixture.emit(list(shares), array_sink(texture))
     return texture

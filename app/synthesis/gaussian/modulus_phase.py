@@ -16,7 +16,7 @@ import math
 import numpy as np
 import scipy.fft
 
-from ..arrays import Complex, Progress, Real
+from ..arrays import Complex, Progress, Real, ignore_progress
 from ..elementary import angle
 
 ROUNDING = 1e-6  # of an image's ℓ² norm: what coefficients of single precision may be off by
@@ -58,7 +58,7 @@ def swap(first: Real, second: Real, threads: int = 1, progress: Progress | None 
     if first.ndim == 2:
         one, other = swap(first[:, :, None], second[:, :, None], threads, progress)
         return one[:, :, 0], other[:, :, 0]
-    report = progress or (lambda stage, part: None)
+    report = progress or ignore_progress
     report("swap", 0)
     height, width, channels = first.shape
     made = np.empty((2, channels, height, width), np.float32)

@@ -13,7 +13,7 @@ Galerne, Gousseau, Morel, "Random Phase Textures: Theory and Synthesis", IEEE TI
 import numpy as np
 import scipy.fft
 
-from ..arrays import Progress, Real
+from ..arrays import Progress, Real, ignore_progress
 from ..fourier.periodic import SmoothSpectrum
 from ..fourier.spectral import half_spectrum
 from ..fourier.spot import centre
@@ -64,7 +64,7 @@ def rayleigh(
     """
     if h.ndim == 2:
         return rayleigh(h[:, :, None], height, width, seed=seed, threads=threads, progress=progress)[:, :, 0]
-    report = progress or (lambda stage, part: None)
+    report = progress or ignore_progress
     report("rayleigh noise", 0)
     height, width = height or h.shape[0], width or h.shape[1]
     h = centre(h, height, width)

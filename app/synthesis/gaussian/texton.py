@@ -21,9 +21,8 @@ from collections.abc import Sequence
 
 import numpy as np
 import scipy.fft
-from numpy.typing import NDArray
 
-from ..arrays import Complex, Progress, Real
+from ..arrays import Complex, Double, Progress, Real, ignore_progress
 from ..fourier.periodic import periodic_planes
 from ..fourier.spectral import Block, column_blocks, random_bits
 from ..fourier.spot import Spot
@@ -109,7 +108,7 @@ def radii(t: Real, parts: Sequence[float]) -> list[float]:
     return [float(np.sqrt(np.searchsorted(within, part * within[-1] * (1 - 1e-9)))) for part in parts]
 
 
-def extend_texton(t: Real, mean: NDArray[np.float64], height: int, width: int) -> Spot:
+def extend_texton(t: Real, mean: Double, height: int, width: int) -> Spot:
     """Extended texton t̃ = m + r (t − m) 1_Ω with r² = M₂N₂ / (M₁N₁).
 
     Its noise has the covariance of colours (1/M₂N₂) Σ (t̃ − m)(t̃ − m)ᵀ, the sum over an image of M₂ × N₂ pixels, and
@@ -164,7 +163,7 @@ def texton_noise(
     -------
     ndarray of float32, shape (height, width, C) of the spots
     """
-    say = progress or (lambda stage, part: None)
+    say = progress or ignore_progress
     height, width = spots[0].height, spots[0].width
     say("random phase", 0.0)
     own = sample_spot(h, height, width, threads=threads)

@@ -1,6 +1,6 @@
-"""A random phase in three dimensions, on the half spectrum of a film.
+"""A random phase in three dimensions, on the half spectrum of a video.
 
-The transform of a real film of T frames is kept as `scipy.fft.rfftn` over (t, y, x) gives it: k₀ = 0 … T − 1 in time,
+The transform of a real video of T frames is kept as `scipy.fft.rfftn` over (t, y, x) gives it: k₀ = 0 … T − 1 in time,
 k₁ = 0 … H − 1 down and k₂ = 0 … W // 2 across; the other half follows from ĥ(−k) = conj ĥ(k). Inside column 0, and for
 an even W inside column W / 2, both k and −k are present. They lie in the rows k₁ and −k₁, so these two are drawn
 together, each pair from a stream of its own.
@@ -14,24 +14,24 @@ from ..fourier.spectral import STATES, symmetrise
 from .rpn import phase_table
 
 
-def pair(row: int, height: int) -> list[int]:
+def conjugate_rows(row: int, height: int) -> list[int]:
     """The rows k₁ and −k₁.
 
     Examples
     --------
-    >>> pair(1, 6), pair(0, 6), pair(3, 6)
+    >>> conjugate_rows(1, 6), conjugate_rows(0, 6), conjugate_rows(3, 6)
     ([1, 5], [0], [3])
     """
     return [row] if (2 * row) % height == 0 else [row, height - row]
 
 
-def rows_of_phase(shape: tuple[int, int, int], row: int, flat: Complex, seed: int) -> Complex:
-    """``exp(iθ)`` at the rows k₁ and −k₁ of the half spectrum of a film; it depends on no other row.
+def random_phase_rows(shape: tuple[int, int, int], row: int, flat: Complex, seed: int) -> Complex:
+    """``exp(iθ)`` at the rows k₁ and −k₁ of the half spectrum of a video; it depends on no other row.
 
     Parameters
     ----------
     shape : tuple of int
-        Frames, height and width of the film.
+        Frames, height and width of the video.
     row : int
         k₁, 0 to height // 2.
     flat : ndarray of complex64, shape (height, width // 2 + 1)
@@ -44,7 +44,7 @@ def rows_of_phase(shape: tuple[int, int, int], row: int, flat: Complex, seed: in
     ndarray of complex64, shape (frames, 2, width // 2 + 1), or (frames, 1, …) where the two rows are the same
     """
     frames, height, width = shape
-    rows = pair(row, height)
+    rows = conjugate_rows(row, height)
     size = (frames, len(rows), width // 2 + 1)
     count = int(np.prod(size))
     words = SFC64(SeedSequence(seed, spawn_key=(row, 1))).random_raw(-(-count // 4)).view(np.uint16)[:count]

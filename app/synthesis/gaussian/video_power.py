@@ -1,4 +1,4 @@
-"""Power spectrum of a film: what its noise keeps, measured while it is made."""
+"""Power spectrum of a video: what its noise keeps, measured while it is made."""
 
 import numpy as np
 
@@ -7,8 +7,8 @@ from ..arrays import Complex, Real
 BAND = 2  # rows of the spectrum on either side of k₁ = 0 that its slice through time is the mean of
 
 
-class FilmPower:
-    """Sums of the squared modulus of a film's half spectrum, which it is given row by row from several threads."""
+class VideoPower:
+    """Sums of the squared modulus of a video's half spectrum, which it is given row by row from several threads."""
 
     def __init__(self, shape: tuple[int, ...], width: int) -> None:
         frames, height, columns = shape
@@ -36,7 +36,7 @@ class FilmPower:
 
     @property
     def variance(self) -> float:
-        """Of the film, the sum over its channels."""
+        """Of the video, the sum over its channels."""
         return self._sum(self.power) / self._values**2
 
     def _sum(self, power: Real) -> float:

@@ -1,8 +1,8 @@
-"""RPN in three dimensions: the modulus of a film over time and space, with a random phase; a Gaussian dynamic texture.
+"""RPN in three dimensions: the modulus of a video over time and space, with a random phase; a Gaussian dynamic texture.
 
     Ẑ(ω, ξ) = ĥ(ω, ξ) exp(iθ(ω, ξ)),   θ odd, uniform on ]−π, π], θ(0, 0) = 0,
 
-the same θ for every channel. The result is periodic in space and in time. A film is hardly ever: the jumps between
+the same θ for every channel. The result is periodic in space and in time. A video is hardly ever: the jumps between
 opposite borders, and between its last frame and its first, would come back as streaks and as a flicker over all of it.
 So every frame is replaced by its periodic component, and the jump J(ξ) that is left between the last frame and the
 first is taken out as Moisan does it along one more axis, a frame counting as a pixel:
@@ -13,9 +13,9 @@ That leaves k = 0, and with it the average frame and all that stands still, as i
 pixels of the bundled sky and smoke the mean square difference between frames is 9.1 and 3.2 times the clip's own with
 the jump, 0.9 and 0.9 without; that of second differences 102 and 49 against 1.2 and 1.3.)
 
-A larger or longer film is made from the extended spot, see `microtexture.fourier.spot`; what does not change with
+A larger or longer video is made from the extended spot, see `microtexture.fourier.spot`; what does not change with
 time is kept out of the window along time, so that what stands still does so for as long. One factor at the end gives
-the whole film the clip's variance, the mean over the channels.
+the whole video the clip's variance, the mean over the channels.
 
 References
 ----------
@@ -31,17 +31,17 @@ import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
-from ..arrays import Complex, Progress, Real
+from ..arrays import Complex, Double, Progress, Real, ignore_progress
 from ..fourier.periodic import SmoothSpectrum
 from ..fourier.spectral import half_spectrum
 from ..fourier.spot import Profile, Spot, fade, window
 from ..fourier.spot_noise import transform
 from ..parallel import Team
 from .rpn import random_phase
-from .video_phase import pair, rows_of_phase
-from .video_power import FilmPower
+from .video_phase import conjugate_rows, random_phase_rows
+from .video_power import VideoPower
 
-Film = NDArray[Any]
+Video = NDArray[Any]
 
 
 def jump_share(frames: int, height: int, width: int, rows: list[int]) -> Complex:
@@ -55,18 +55,18 @@ def jump_share(frames: int, height: int, width: int, rows: list[int]) -> Complex
     return share
 
 
-def middle(film: Film, shape: tuple[int, int, int]) -> Film:
-    """Take the centre of a film, at most ``shape`` of it (a view)."""
-    starts = (max(0, (have - asked) // 2) for have, asked in zip(film.shape, shape, strict=False))
-    return film[tuple(slice(start, start + asked) for start, asked in zip(starts, shape, strict=True))]
+def centre_video(video: Video, shape: tuple[int, int, int]) -> Video:
+    """Take the centre of a video, at most ``shape`` of it (a view)."""
+    starts = (max(0, (have - asked) // 2) for have, asked in zip(video.shape, shape, strict=False))
+    return video[tuple(slice(start, start + asked) for start, asked in zip(starts, shape, strict=True))]
 
 
-class MovingField:
-    """The noise of a film, made up to its last transform: `frames` gives it frame by frame, any number of times.
+class VideoNoiseField:
+    """The noise of a video, made up to its last transform: `frames` gives it frame by frame, any number of times.
 
     Parameters
     ----------
-    film : ndarray, shape (T, H, W, C)
+    video : ndarray, shape (T, H, W, C)
         Finite; any range. Along an axis that is longer than the texture's, its centre is taken.
     shape : tuple of int
         Frames, height and width of the texture.
@@ -90,7 +90,7 @@ class MovingField:
 
     def __init__(
         self,
-        film: Film,
+        video: Video,
         shape: tuple[int, int, int],
         *,
         seed: int,
@@ -101,16 +101,16 @@ class MovingField:
     ) -> None:
         self.shape, self._seed, self._alpha, self._profile = shape, seed, alpha, profile
         self._team, self._progress = team, progress
-        film = middle(film, shape)
-        self.mean = film.mean(axis=(0, 1, 2), dtype=np.float64)
-        spectrum = self._of_frames(film)
+        video = centre_video(video, shape)
+        self.mean = video.mean(axis=(0, 1, 2), dtype=np.float64)
+        spectrum = self._of_frames(video)
         jump = spectrum[:, 0] - spectrum[:, -1]
-        if film.shape[:3] == shape:
+        if video.shape[:3] == shape:
             made = self._in_time(spectrum, shape[2], ("random phase", 0.2, 1.0), jump=jump, randomise=True)
             gain = 1.0
         else:
-            own = self._in_time(spectrum, film.shape[2], ("periodic", 0.2, 0.4), jump=jump)
-            spectrum, still = self._extended(spectrum, film.shape[2])
+            own = self._in_time(spectrum, video.shape[2], ("periodic", 0.2, 0.4), jump=jump)
+            spectrum, still = self._extended(spectrum, video.shape[2])
             made = self._in_time(spectrum, shape[2], ("random phase", 0.6, 1.0), still=still, randomise=True)
             gain = sqrt(own.variance / made.variance) if made.variance > 0 else 1.0
         self._spectrum, self._gain = spectrum, np.float32(gain)
@@ -118,7 +118,7 @@ class MovingField:
         self.still = made.still
 
     def frames(self) -> Iterator[Real]:
-        """Frame by frame, (height, width, C); values may lie outside the film's range."""
+        """Frame by frame, (height, width, C); values may lie outside the video's range."""
         mean = self.mean.astype(np.float32)[:, None, None]
         for index in range(self.shape[0]):
             planes: Real = scipy.fft.irfft2(self._spectrum[:, index], s=self.shape[1:], workers=self._team.threads)
@@ -130,14 +130,14 @@ class MovingField:
         name, begin, end = stage
         self._team.run(task, range(count), lambda part: self._progress(name, begin + (end - begin) * part))
 
-    def _of_frames(self, film: Film) -> Complex:
+    def _of_frames(self, video: Video) -> Complex:
         """Half spectra of the frames' periodic components without the mean, (C, T, H, W // 2 + 1)."""
-        frames, height, width, channels = film.shape
+        frames, height, width, channels = video.shape
         spectrum = np.empty((channels, frames, height, width // 2 + 1), np.complex64)
         mean = self.mean.astype(np.float32)
 
         def transform_frame(index: int) -> None:
-            h = film[index] - mean
+            h = video[index] - mean
             spectrum[:, index] = scipy.fft.rfft2(h.transpose(2, 0, 1), workers=1)
             spectrum[:, index] -= SmoothSpectrum(h).whole()
 
@@ -154,7 +154,7 @@ class MovingField:
         jump: Complex | None = None,
         still: Complex | None = None,
         randomise: bool = False,
-    ) -> FilmPower:
+    ) -> VideoPower:
         """Go to frequencies in time and back, in place, row by row of the frames' spectra.
 
         ``jump`` (C, H, columns) is taken out; ``still``, of the same shape, is added to every frame; the mean becomes 0
@@ -162,12 +162,12 @@ class MovingField:
         """
         _, frames, height, _ = spectrum.shape
         flat = half_spectrum(random_phase, height, width, self._seed) if randomise else None
-        measure = FilmPower(spectrum.shape[1:], width)
+        measure = VideoPower(spectrum.shape[1:], width)
 
         def transform_rows(row: int) -> None:
-            rows = pair(row, height)
+            rows = conjugate_rows(row, height)
             smooth = None if jump is None else jump_share(frames, height, width, rows) * jump[:, None, rows]
-            phase = None if flat is None else rows_of_phase((frames, height, width), row, flat, self._seed)
+            phase = None if flat is None else random_phase_rows((frames, height, width), row, flat, self._seed)
             for channel, planes in enumerate(spectrum):
                 block: Complex = scipy.fft.fft(planes[:, rows], axis=0, overwrite_x=True, workers=1)
                 if smooth is not None:
@@ -197,7 +197,7 @@ class MovingField:
         extended = np.zeros((channels, frames, height, across // 2 + 1), np.complex64)
         top = (frames - count) // 2
 
-        def spread(planes: Complex) -> tuple[Complex, NDArray[np.float64]]:
+        def spread(planes: Complex) -> tuple[Complex, Double]:
             """A frame's spectrum at the texture's size, but for its mean, and this."""
             p: Real = scipy.fft.irfft2(planes, s=(high, width), workers=1)
             mean = p.mean((1, 2), dtype=np.float64)
@@ -218,7 +218,7 @@ class MovingField:
 
 
 def video_rpn(
-    film: Film,
+    video: Video,
     frames: int | None = None,
     height: int | None = None,
     width: int | None = None,
@@ -229,15 +229,15 @@ def video_rpn(
     threads: int = 1,
     progress: Progress | None = None,
 ) -> Real:
-    """RPN of a film in three dimensions, of any length and size.
+    """RPN of a video in three dimensions, of any length and size.
 
     Parameters
     ----------
-    film : ndarray, shape (T, H, W, C)
+    video : ndarray, shape (T, H, W, C)
         Any number of channels, any range, finite.
     frames, height, width : int, optional
-        Of the texture; default: the film's. Along a longer axis the spot is extended (see
-        `microtexture.fourier.spot`), along a shorter one the film's centre is taken.
+        Of the texture; default: the video's. Along a longer axis the spot is extended (see
+        `microtexture.fourier.spot`), along a shorter one the video's centre is taken.
     seed : int
         Not negative; the result depends on nothing else.
     alpha, window
@@ -250,7 +250,7 @@ def video_rpn(
     Returns
     -------
     ndarray of float32, shape (frames, height, width, C)
-        Periodic in space and in time; values may lie outside the film's range.
+        Periodic in space and in time; values may lie outside the video's range.
 
     Raises
     ------
@@ -259,15 +259,15 @@ def video_rpn(
 
     Examples
     --------
-    >>> film = np.random.default_rng(0).random((6, 16, 20, 3), np.float32)
-    >>> z = video_rpn(film, 8, 24, 20, seed=7)
-    >>> z.shape, bool(np.allclose(z.mean((0, 1, 2)), film.mean((0, 1, 2))))
+    >>> video = np.random.default_rng(0).random((6, 16, 20, 3), np.float32)
+    >>> z = video_rpn(video, 8, 24, 20, seed=7)
+    >>> z.shape, bool(np.allclose(z.mean((0, 1, 2)), video.mean((0, 1, 2))))
     ((8, 24, 20, 3), True)
     """
-    if not np.isfinite(film).all():
-        raise ValueError("The film holds values that are not finite.")
-    shape = (frames or film.shape[0], height or film.shape[1], width or film.shape[2])
+    if not np.isfinite(video).all():
+        raise ValueError("The video holds values that are not finite.")
+    shape = (frames or video.shape[0], height or video.shape[1], width or video.shape[2])
     with Team(threads) as team:
-        said = progress or (lambda stage, part: None)
-        field = MovingField(film, shape, seed=seed, alpha=alpha, profile=window, team=team, progress=said)
+        said = progress or ignore_progress
+        field = VideoNoiseField(video, shape, seed=seed, alpha=alpha, profile=window, team=team, progress=said)
         return np.stack(list(field.frames()))

@@ -25,7 +25,7 @@ from numpy.random import SFC64, Generator, SeedSequence
 from numpy.typing import NDArray
 from scipy import fft
 
-from ..arrays import Real
+from ..arrays import Double, Index, Real
 from ..parallel import Work
 
 STEPS = 16 * 255  # of the values' range
@@ -35,12 +35,9 @@ LEAST_TILE = 128
 IN_TILES = 1 << 19  # pixels that are transformed together
 STREAM = 2  # of the seed's; cells and their random sources have those before
 
-Double = NDArray[np.float64]
-Index = NDArray[np.intp]
-
 
 @dataclass(frozen=True)
-class Patches:
+class PatternPatches:
     """What is to be matched, and where.
 
     Parameters
@@ -77,7 +74,7 @@ class Matches:
 
 
 def best_matches(
-    texture: Real, pattern: Real, patches: Patches, *, peak: float, candidates: int, seed: int, work: Work
+    texture: Real, pattern: Real, patches: PatternPatches, *, peak: float, candidates: int, seed: int, work: Work
 ) -> Matches:
     """For every patch the candidate where the sum of squared differences is least, the first one of several.
 
@@ -108,9 +105,9 @@ def best_matches(
             for patch in block[~every[block]].tolist():
                 places = patches.first[patch] + (numbers[:, patch - first] * extents[patch]).astype(np.intp)
                 search.among(patch, places)
-                work.alive()
+                work.checkpoint()
         for _ in search.everywhere(block[every[block]]):
-            work.alive()
+            work.checkpoint()
 
     work.run("matching", match, range(0, len(patches), BLOCK))
     return Matches(search.places, search.errors * (peak / STEPS) ** 2, search.sizes)
@@ -125,7 +122,7 @@ def _whole(image: Real, peak: float) -> Double:
 class _Search:
     """Keeps, for each patch, the best place found and its distance in steps squared."""
 
-    def __init__(self, texture: Double, pattern: Double, patches: Patches) -> None:
+    def __init__(self, texture: Double, pattern: Double, patches: PatternPatches) -> None:
         self._texture, self._pattern, self._patches = texture, pattern, patches
         # Sums of |I|² over all that is above and to the left.
         squares = np.square(texture).sum(2)

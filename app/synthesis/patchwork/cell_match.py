@@ -14,7 +14,7 @@ import numpy as np
 
 from ..arrays import Ints, Real
 from ..parallel import Work
-from .best_places import Matches, Patches, best_matches
+from .best_places import Matches, PatternPatches, best_matches
 from .cells import Cells
 
 HALF = 0.75  # of a square's side, in spacings
@@ -52,7 +52,7 @@ def match_cells(
     zones = np.where(seen, cells.zones, compared)
     first = -np.minimum(zones[:, ::2], compared[:, ::2])
     last = np.array(texture.shape[:2]) - np.maximum(zones[:, 1::2], compared[:, 1::2])
-    patches = Patches(cells.centres, boxes, first, last)
+    patches = PatternPatches(cells.centres, boxes, first, last)
     return best_matches(texture, pattern, patches, peak=peak, candidates=candidates, seed=seed, work=work)
 
 

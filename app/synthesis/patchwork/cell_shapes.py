@@ -11,9 +11,8 @@ from functools import lru_cache, reduce
 from math import ceil, hypot
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arrays import Ints, Real
+from ..arrays import Double, Ints, Real
 from ..elementary import power
 
 REACH = 3.0  # spacings after which a weight is 0
@@ -27,7 +26,7 @@ LEAST_SQUARE = np.float32(1e-6)  # of a distance, to take logarithms of
 EPSILON = 1e-5  # what single precision may be wrong by
 
 
-def log_weight(d: NDArray[np.float64], sharpness: float) -> NDArray[np.float64]:
+def log_weight(d: Double, sharpness: float) -> Double:
     """log(d^(−f) − R^(−f)) of distances in spacings, −∞ from R on.
 
     Examples
@@ -61,7 +60,7 @@ class Axis:
         edges: Ints = np.arange(-self.beyond, self.count + self.beyond + 1) * self.size // self.count
         return edges
 
-    def jittered(self, jitter: NDArray[np.float64], axis: int) -> Ints:
+    def jittered(self, jitter: Double, axis: int) -> Ints:
         """Places in the squares along ``axis`` of an array of numbers of [0, 1)."""
         shape = (-1, 1) if axis == 0 else (1, -1)
         first, length = self.edges[:-1].reshape(shape), np.diff(self.edges).reshape(shape)

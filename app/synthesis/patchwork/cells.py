@@ -194,7 +194,7 @@ class Cells:
         lows, highs = np.stack([-top, -left], 1), np.stack([height - bottom, width - right], 1)
         if (lows > highs).any():
             raise ValueError(f"A sample of {width} × {height} pixels does not hold the cells.")
-        return random(seed, 1).integers(lows, highs, endpoint=True)
+        return random_numbers(seed, 1).integers(lows, highs, endpoint=True)
 
     def margin(self, sources: Ints, height: int, width: int) -> int:
         """How many pixels beyond a sample's border the boxes reach from these sources: to be filled by mirroring."""
@@ -252,7 +252,7 @@ def jittered_cells(height: int, width: int, *, grid: int, sharpness: float, tile
         number = turn[0][:, None] * columns.count + turn[1][None, :]
     else:
         number = np.arange(squares[0] * squares[1]).reshape(squares)
-    jitter = random(seed, 0).random((int(number.max()) + 1, 2))[number]
+    jitter = random_numbers(seed, 0).random((int(number.max()) + 1, 2))[number]
     y, x = rows.jittered(jitter[:, :, 0], 0), columns.jittered(jitter[:, :, 1], 1)
     number = number.ravel()
     found = extents(rows, columns, y, x, sharpness, (1, BLEND, LEFT_OUT)).reshape(3, 4, -1)
@@ -281,7 +281,7 @@ def jittered_cells(height: int, width: int, *, grid: int, sharpness: float, tile
     )
 
 
-def random(seed: int, stream: int) -> Generator:
+def random_numbers(seed: int, stream: int) -> Generator:
     """Random numbers of their own for each purpose."""
     return Generator(SFC64(SeedSequence(seed, spawn_key=(stream,))))
 

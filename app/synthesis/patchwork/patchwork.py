@@ -14,13 +14,12 @@ from collections.abc import Callable
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arrays import Progress, Real
+from ..arrays import Checkpoint, Ints, Progress, Real, ignore_progress
 from ..parallel import Team, Work, row_blocks
-from ..sinks import into
+from ..sinks import array_sink
 from .cells import Cells, Part, Window, jittered_cells
-from .unbounded_cells import Reach, joined_cells
+from .unbounded_cells import Reach, cells_with_reach
 
 BAND, TILE = 192, 1024  # rows and columns that are joined at once: with smaller ones calls take longer than sums
 SMALL_BAND, SMALL_TILE = 64, 512  # where all cells count: what is added to so often stays in the cache
@@ -28,11 +27,11 @@ SMALL_BAND, SMALL_TILE = 64, 512  # where all cells count: what is added to so o
 Blend = Literal["deviation", "feather", "sharp"]
 
 
-def _go_on() -> None:
+def _never_stop() -> None:
     """Never stop."""
 
 
-class Patches:
+class SamplePatches:
     """What every part of a plane shows of a sample: its pixels at x − p_i + q_i.
 
     Parameters
@@ -44,13 +43,13 @@ class Patches:
         q_i as (y, x), as `Cells.sources` gives them.
     """
 
-    def __init__(self, planes: Real, cells: Cells, sources: NDArray[np.int64]) -> None:
+    def __init__(self, planes: Real, cells: Cells, sources: Ints) -> None:
         _, height, width = planes.shape
         margin = cells.margin(sources, height, width)
         self._planes = np.pad(planes, [(0, 0), (margin, margin), (margin, margin)], "symmetric")
         self._start = sources[cells.cell] + margin
 
-    def of(self, part: Part) -> Real:
+    def pixels(self, part: Part) -> Real:
         """Pixels of a part, shape (C, rows, columns); not to be written to."""
         y, x = self._start[part.centre] + part.source
         return self._planes[:, y + part.rows.start : y + part.rows.stop, x + part.columns.start : x + part.columns.stop]
@@ -87,21 +86,21 @@ class Patchwork:
         height, width, _ = h.shape
         self.sources = cells.sources(height, width, seed)
         self._mean: Real = h.mean((0, 1), np.float64).astype(np.float32)
-        self._patches = Patches(h.transpose(2, 0, 1) - self._mean[:, None, None], cells, self.sources)
+        self._patches = SamplePatches(h.transpose(2, 0, 1) - self._mean[:, None, None], cells, self.sources)
 
-    def rows(self, top: int, bottom: int, alive: Callable[[], None] = _go_on) -> Real:
+    def rows(self, top: int, bottom: int, checkpoint: Checkpoint = _never_stop) -> Real:
         """Rows ``top`` to ``bottom`` − 1 of the texture, shape (C, bottom − top, width), any time and in any order.
 
-        ``alive`` is called between patches; what it raises stops the work.
+        ``checkpoint`` is called between patches; what it raises stops the work.
         """
         out = np.zeros((len(self._mean), bottom - top, self.cells.width), np.float32)
-        _join(out, top, self.cells, self._patches.of, self._blend, alive)
+        _join(out, top, self.cells, self._patches.pixels, self._blend, checkpoint)
         out += self._mean[:, None, None]
         return out
 
 
-def painted(
-    cells: Cells, colours: Real, top: int, bottom: int, *, soft: bool = True, alive: Callable[[], None] = _go_on
+def paint_cells(
+    cells: Cells, colours: Real, top: int, bottom: int, *, soft: bool = True, checkpoint: Checkpoint = _never_stop
 ) -> Real:
     """Rows of a picture of the cells, as in the report's figure 2.
 
@@ -112,7 +111,7 @@ def painted(
     top, bottom : int
     soft : bool
         Mix the colours by the weights, so that the picture shows f.
-    alive : callable
+    checkpoint : callable
         See `Patchwork.rows`.
 
     Returns
@@ -121,17 +120,17 @@ def painted(
     """
     out = np.zeros((colours.shape[1], bottom - top, cells.width), np.float32)
     blend: Blend = "feather" if soft else "sharp"
-    _join(out, top, cells, lambda part: colours[cells.cell[part.centre], :, None, None], blend, alive)
+    _join(out, top, cells, lambda part: colours[cells.cell[part.centre], :, None, None], blend, checkpoint)
     return out
 
 
-def band(cells: Cells) -> int:
+def band_rows(cells: Cells) -> int:
     """How many rows are best joined at once."""
     return BAND if cells.ends else SMALL_BAND
 
 
 def _join(
-    out: Real, top: int, cells: Cells, show: Callable[[Part], Real], blend: Blend, alive: Callable[[], None]
+    out: Real, top: int, cells: Cells, show: Callable[[Part], Real], blend: Blend, checkpoint: Checkpoint
 ) -> None:
     """Put together what every part shows, into rows that begin at ``top`` and hold zeros."""
     bottom = top + out.shape[1]
@@ -143,7 +142,7 @@ def _join(
         norm = np.zeros(tile.shape[1:], np.float32)
         room = np.empty(tile.size, np.float32)
         for part in cells.parts(window, among):
-            alive()
+            checkpoint()
             there, shown = (part.rows, part.columns), show(part)
             if blend == "sharp":
                 np.copyto(tile[:, *there], shown, where=part.weight == 1)
@@ -205,11 +204,15 @@ def patchwork(
     """
     cells = jittered_cells(height, width, grid=grid, sharpness=sharpness, tileable=tileable, seed=seed)
     if blend != "sharp":
-        cells = joined_cells(cells, reach, tileable=tileable)
+        cells = cells_with_reach(cells, reach, tileable=tileable)
     made = Patchwork(h, cells, blend=blend, seed=seed)
     texture = np.empty((height, width, h.shape[2]), np.float32)
-    store = into(texture)
+    store = array_sink(texture)
     with Team(threads) as team:
-        work = Work(team, progress or (lambda stage, part: None))
-        work.run("texture", lambda rows: store(rows[0], made.rows(*rows, work.alive)), row_blocks(height, band(cells)))
+        work = Work(team, progress or ignore_progress)
+        work.run(
+            "texture",
+            lambda rows: store(rows[0], made.rows(*rows, work.checkpoint)),
+            row_blocks(height, band_rows(cells)),
+        )
     return texture

@@ -19,24 +19,20 @@ References
 Harrison, "Patchwork texture synthesis", technical report, Monash University, 2002, section 5.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arrays import Real
+from ..arrays import Checkpoint, Double, Ints, Real
 from ..parallel import Work, row_blocks
 from .best_places import Matches
 from .cell_match import match_cells
 from .cells import Cells, Window
-from .patchwork import Patches
-from .unbounded_cells import Reach, joined_cells
+from .patchwork import SamplePatches
+from .unbounded_cells import Reach, cells_with_reach
 
 BAND, SMALL_BAND, TILE = 128, 64, 512  # rows, rows where all cells count, and columns that are joined at once
 TINY = 1e-30  # instead of 0, for a cell whose box holds no pixel that it has a part of
-
-Double = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -52,7 +48,7 @@ class Transfer:
     matches: Matches
 
 
-def rescaled(pattern: Real, texture: Real) -> Real:
+def rescale(pattern: Real, texture: Real) -> Real:
     """The pattern with the mean and the range of the texture, channel by channel.
 
     Parameters
@@ -68,7 +64,7 @@ def rescaled(pattern: Real, texture: Real) -> Real:
     Examples
     --------
     >>> texture = np.array([10, 20, 30, 60], np.float32).reshape(2, 2, 1)
-    >>> rescaled(np.array([0, 0, 1, 1], np.float32).reshape(2, 2, 1), texture).ravel().tolist()
+    >>> rescale(np.array([0, 0, 1, 1], np.float32).reshape(2, 2, 1), texture).ravel().tolist()
     [5.0, 5.0, 55.0, 55.0]
     """
     low, high = pattern.min((0, 1)), pattern.max((0, 1))
@@ -110,13 +106,13 @@ def transfer(
         Its stages ``"matching"``, ``"averages"`` and ``"texture"``.
     """
     matches = match_cells(texture, pattern, cells, peak=peak, candidates=candidates, seed=seed, work=work)
-    mosaic = _Mosaic(texture, matches.places, joined_cells(cells, reach, tileable=False))
+    mosaic = _Mosaic(texture, matches.places, cells_with_reach(cells, reach, tileable=False))
     averages = mosaic.averages(work)
     output, average = np.empty(pattern.shape, np.float32), np.empty(pattern.shape, np.float32)
 
     def join(window: Window) -> None:
         there = slice(window.top, window.bottom), slice(window.left, window.right)
-        deviations, feathered = mosaic.joined(window, averages, work.alive)
+        deviations, feathered = mosaic.joined(window, averages, work.checkpoint)
         average[there] = feathered.transpose(1, 2, 0)
         feathered += deviations
         output[there] = feathered.transpose(1, 2, 0).clip(0, peak)
@@ -128,9 +124,9 @@ def transfer(
 class _Mosaic:
     """Patches of a texture, laid over the plane."""
 
-    def __init__(self, texture: Real, sources: NDArray[np.int64], cells: Cells) -> None:
+    def __init__(self, texture: Real, sources: Ints, cells: Cells) -> None:
         self._cells, self._channels = cells, texture.shape[2]
-        self._patches = Patches(texture.transpose(2, 0, 1), cells, sources)
+        self._patches = SamplePatches(texture.transpose(2, 0, 1), cells, sources)
         self.windows = [
             Window(top, bottom, left, min(left + TILE, cells.width))
             for top, bottom in row_blocks(cells.height, BAND if cells.ends else SMALL_BAND)
@@ -148,9 +144,9 @@ class _Mosaic:
                 total[part.rows, part.columns] += part.weight
             sums = []
             for part in parts:
-                work.alive()
+                work.checkpoint()
                 share = part.weight / total[part.rows, part.columns]
-                of_planes = (self._patches.of(part) * share).sum((1, 2), np.float64)
+                of_planes = (self._patches.pixels(part) * share).sum((1, 2), np.float64)
                 sums.append(np.append(of_planes, share.sum(dtype=np.float64)))
             found[window] = [part.centre for part in parts], sums
 
@@ -162,17 +158,17 @@ class _Mosaic:
         averages: Real = (totals[:, :-1] / np.maximum(totals[:, -1:], TINY)).astype(np.float32)
         return averages
 
-    def joined(self, window: Window, averages: Real, alive: Callable[[], None]) -> tuple[Real, Real]:
-        """The two terms of equation (7), both (C, rows, columns); ``alive`` raises to stop."""
+    def joined(self, window: Window, averages: Real, checkpoint: Checkpoint) -> tuple[Real, Real]:
+        """The two terms of equation (7), both (C, rows, columns); ``checkpoint`` raises to stop."""
         shape = (window.bottom - window.top, window.right - window.left)
         deviations, feathered = np.zeros((2, self._channels, *shape), np.float32)
         total, norm = np.zeros((2, *shape), np.float32)
         for part in self._cells.parts(window):
-            alive()
+            checkpoint()
             there = (part.rows, part.columns)
             total[there] += part.weight
             norm[there] += np.square(part.weight)
-            deviations[:, *there] += self._patches.of(part) * part.weight
+            deviations[:, *there] += self._patches.pixels(part) * part.weight
             feathered[:, *there] += averages[part.centre, :, None, None] * part.weight
         deviations -= feathered
         deviations /= np.sqrt(norm)

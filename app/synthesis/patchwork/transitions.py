@@ -16,9 +16,8 @@ Harrison, "Patchwork texture synthesis", 2002, section 4, equations (3) to (6).
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arrays import Ints, Real
+from ..arrays import Double, Ints, Real
 
 
 def longest_interval(clip: int, frames: int, loop: bool) -> int:
@@ -42,7 +41,7 @@ def longest_interval(clip: int, frames: int, loop: bool) -> int:
 
 
 @dataclass(frozen=True)
-class Mix:
+class FrameMix:
     """What one frame of each of n sequences is made of: α I(first) + β I(second) + (1 − α − β) A.
 
     ``first`` and ``second`` are frames of the clip; α² + β² = 1.
@@ -95,7 +94,7 @@ class Transitions:
             q[:, 0], q[:, -1] = q[:, -2], q[:, 1]
         self._p, self._shift = p, q - p
 
-    def at(self, frame: int) -> Mix:
+    def mix(self, frame: int) -> FrameMix:
         """What frame number ``frame``, 0 ≤ frame < ``frames``, of every sequence is made of."""
         rows, column = self._interval(frame)
         w1, w2 = self._weights(frame, rows, column)
@@ -103,14 +102,14 @@ class Transitions:
         first = frame + self._shift[rows, column]
         # Where a sequence is at a transition point, the other part counts for nothing and may lie outside the clip.
         second = np.where(w2 == 0, first, frame + self._shift[rows, column + 1])
-        return Mix(first, second, (w1 * scale).astype(np.float32), (w2 * scale).astype(np.float32))
+        return FrameMix(first, second, (w1 * scale).astype(np.float32), (w2 * scale).astype(np.float32))
 
-    def sources(self, frame: int) -> NDArray[np.float64]:
+    def sources(self, frame: int) -> Double:
         """Where in the clip every sequence's frame comes from, w₁ q_i + w₂ q_{i+1}: for pictures."""
         rows, column = self._interval(frame)
         w1, w2 = self._weights(frame, rows, column)
         q = self._p + self._shift
-        between: NDArray[np.float64] = w1 * q[rows, column] + w2 * q[rows, column + 1]
+        between: Double = w1 * q[rows, column] + w2 * q[rows, column + 1]
         return between
 
     def _interval(self, frame: int) -> tuple[Ints, Ints]:
@@ -118,7 +117,7 @@ class Transitions:
         part = int(np.searchsorted(self._edges, frame, side="right")) - 1
         return np.arange(len(self._p)), np.where(self._p[:, part] <= frame, part, part - 1)
 
-    def _weights(self, frame: int, rows: Ints, column: Ints) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def _weights(self, frame: int, rows: Ints, column: Ints) -> tuple[Double, Double]:
         begin, end = self._p[rows, column], self._p[rows, column + 1]
         cosine = np.cos(np.pi * (frame - begin) / (end - begin))
         return 0.5 + 0.5 * cosine, 0.5 - 0.5 * cosine

@@ -76,12 +76,12 @@ def span(length: int, unit: float, sharpness: float, tileable: bool) -> tuple[in
     return int(min(before, far)), int(min(after, far))
 
 
-def terms(height: int, width: int, grid: int, sharpness: float, tileable: bool) -> int:
+def count_terms(height: int, width: int, grid: int, sharpness: float, tileable: bool) -> int:
     """How many products of a weight and a pixel the sum has, about: pixels times the cells that count at each.
 
     Examples
     --------
-    >>> terms(512, 512, 64, 2, True) == 512**2 * 64
+    >>> count_terms(512, 512, 64, 2, True) == 512**2 * 64
     True
     """
     cells = 1.0
@@ -97,7 +97,7 @@ def table_bytes(height: int, width: int, grid: float, sharpness: float, tileable
     return 4 * (down * across + ROWS * across * 4)
 
 
-def joined_cells(cells: Cells, reach: Reach, *, tileable: bool) -> Cells:
+def cells_with_reach(cells: Cells, reach: Reach, *, tileable: bool) -> Cells:
     """The same cells with weights that do not end; or themselves, where that makes no difference or is not asked for.
 
     Parameters
@@ -116,7 +116,7 @@ def joined_cells(cells: Cells, reach: Reach, *, tileable: bool) -> Cells:
     --------
     >>> from app.synthesis.patchwork.cells import jittered_cells
     >>> cells = jittered_cells(60, 60, grid=10, sharpness=2, tileable=True, seed=1)
-    >>> len(joined_cells(cells, "all", tileable=True).parts(Window(0, 1, 0, 1)))  # each once
+    >>> len(cells_with_reach(cells, "all", tileable=True).parts(Window(0, 1, 0, 1)))  # each once
     36
     """
     if reach == "near" or cells.sharpness >= ENDS:

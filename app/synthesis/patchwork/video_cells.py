@@ -6,14 +6,13 @@ Harrison, "Patchwork texture synthesis", 2002, Figure 5.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arrays import Ints, Real
+from ..arrays import Double, Ints, Real
 from .cells import Cells, Window
 from .transitions import Transitions
 
 
-def source_colours(places: NDArray[np.float64] | Ints, sides: tuple[int, int, int]) -> Real:
+def source_colours(places: Double | Ints, sides: tuple[int, int, int]) -> Real:
     """Colours that say where in the clip: red from left to right, green from top to bottom, blue from first to last.
 
     Parameters
@@ -63,7 +62,7 @@ class FixedCells:
         for part in self._parts:
             self._sums[part.rows, part.columns, 0] += part.weight
 
-    def painted(self, frame: int) -> Real:
+    def paint(self, frame: int) -> Real:
         """Every cell in the colour of its source, mixed by their weights: (rows, columns, 3), 0 to 255."""
         places = np.column_stack([self._transitions.sources(frame), self._sources])
         colours = source_colours(places, self._sides)

@@ -19,9 +19,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arrays import Ints, Real
+from ..arrays import Bytes, Ints, Mask, Real
 from .cells import Window
 from .unbounded_cells import ENDS, Reach
 
@@ -31,7 +30,7 @@ TILE = 512  # pixels a side of what is made at a time
 HELD = 12  # arrays of its size, in single precision
 
 
-def needed(length: int, spacing: int) -> int:
+def least_length(length: int, spacing: int) -> int:
     """Pixels that a side of the crop, or frames that the clip, must have for patches of this spacing.
 
     Parameters
@@ -43,31 +42,31 @@ def needed(length: int, spacing: int) -> int:
 
     Examples
     --------
-    >>> needed(320, 64), needed(72, 18), needed(5, 64)
+    >>> least_length(320, 64), least_length(72, 18), least_length(5, 64)
     (225, 63, 5)
     """
     return min(2 * int(REACH * spacing) + 1, length)
 
 
-def held_bytes(height: int, width: int, threads: int = 4) -> int:
+def tile_bytes(height: int, width: int, threads: int = 4) -> int:
     """Bytes of what so many threads hold of a tile, for frames of this size."""
     return 4 * HELD * threads * min(height, TILE) * min(width, TILE)
 
 
-def products(shape: tuple[int, int, int], grid: int, interval: int) -> int:
+def count_mosaic_terms(shape: tuple[int, int, int], grid: int, interval: int) -> int:
     """How many products of a weight and a pixel a frame has where every point counts."""
     frames, height, width = shape
     points = -(-frames // interval) * -(-height // grid) * -(-width // grid)
     return points * height * width
 
 
-class Mosaic:
+class VideoMosaic:
     """A three-dimensional patchwork, of which any frame can be computed.
 
     Parameters
     ----------
     planes : ndarray of uint8, shape (T, C, H, W)
-        The clip, each side as long as is `needed`.
+        The clip, each side as long as is `least_length`.
     shape : tuple of int
         Frames, height and width of the output.
     grid, interval : int
@@ -88,7 +87,7 @@ class Mosaic:
 
     def __init__(
         self,
-        planes: NDArray[np.uint8],
+        planes: Bytes,
         shape: tuple[int, int, int],
         *,
         grid: int,
@@ -138,7 +137,7 @@ class Mosaic:
         total += mean
         return total
 
-    def painted(self, number: int, window: Window, colours: Real) -> Real:
+    def paint(self, number: int, window: Window, colours: Real) -> Real:
         """The cells that meet a window of a frame, each in its colour, mixed by their weights.
 
         Parameters
@@ -236,9 +235,9 @@ class _Axis:
             offsets = (offsets + back) % self.length - back
         return offsets
 
-    def reaches(self, offsets: Ints) -> NDArray[np.bool_]:
+    def reaches(self, offsets: Ints) -> Mask:
         """Which points are seen at these offsets from them."""
-        seen: NDArray[np.bool_] = (-self._before <= offsets) & (offsets <= self._after)
+        seen: Mask = (-self._before <= offsets) & (offsets <= self._after)
         return seen
 
     def parts(self, cell: int, begin: int, end: int) -> Iterator[tuple[slice, slice | Ints, Real]]:

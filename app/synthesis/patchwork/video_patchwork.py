@@ -19,9 +19,8 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arrays import Ints, Real
+from ..arrays import Bytes, Ints, PartDone, Real
 from ..parallel import Team
 from .cells import Cells, Window
 from .transitions import Transitions
@@ -30,12 +29,12 @@ STRIP = 128  # rows: with slighter strips less is outside of round cells, but th
 TINY = 1e-30  # instead of 0, for a cell that has a part of no pixel
 
 
-class Clip:
-    """A film as planes with a mirrored margin, and its average image.
+class PaddedClip:
+    """A video as planes with a mirrored margin, and its average image.
 
     Parameters
     ----------
-    film : ndarray of uint8, shape (T, H, W, C)
+    video : ndarray of uint8, shape (T, H, W, C)
     margin : int
         Pixels by which patches reach over its border.
 
@@ -43,16 +42,16 @@ class Clip:
     ----------
     planes : ndarray of uint8, shape (T, C, H + 2 margin, W + 2 margin)
     average : ndarray of float32, shape (C, H + 2 margin, W + 2 margin)
-        A(x), the mean of every pixel over time; exact for a film whose frames are all equal, which so stays as it is.
+        A(x), the mean of every pixel over time; exact for a video whose frames are all equal, which so stays as it is.
     margin : int
     """
 
-    def __init__(self, film: NDArray[np.uint8], margin: int = 0) -> None:
-        frames, height, width, channels = film.shape
+    def __init__(self, video: Bytes, margin: int = 0) -> None:
+        frames, height, width, channels = video.shape
         self.planes = np.empty((frames, channels, height + 2 * margin, width + 2 * margin), np.uint8)
         total = np.zeros(self.planes.shape[1:], np.uint32)
         around = [(0, 0), (margin, margin), (margin, margin)]
-        for planes, frame in zip(self.planes, film, strict=True):
+        for planes, frame in zip(self.planes, video, strict=True):
             planes[:] = np.pad(frame.transpose(2, 0, 1), around, mode="symmetric")
             total += planes
         self.average: Real = (total / frames).astype(np.float32)
@@ -86,7 +85,7 @@ class VideoPatchwork:
     """
 
     def __init__(
-        self, clip: Clip, cells: Cells, sources: Ints, transitions: Transitions, means: Real | None = None
+        self, clip: PaddedClip, cells: Cells, sources: Ints, transitions: Transitions, means: Real | None = None
     ) -> None:
         self._clip, self._transitions = clip, transitions
         self._patches: list[_Patch] = []
@@ -138,7 +137,7 @@ class VideoPatchwork:
 
     def frame(self, number: int) -> Real:
         """Frame ``number`` of the output, (H, W, C), values about those of the clip and sometimes beyond."""
-        mix = self._transitions.at(number)
+        mix = self._transitions.mix(number)
         made = np.zeros_like(self._still)
         for patch in self._patches:
             source = slice(None), *patch.source
@@ -154,7 +153,7 @@ class VideoPatchwork:
         return made.transpose(1, 2, 0)
 
 
-def in_order(frame: Callable[[int], Real], count: int, threads: int, done: Callable[[float], None]) -> Iterator[Real]:
+def frames_in_order(frame: Callable[[int], Real], count: int, threads: int, done: PartDone) -> Iterator[Real]:
     """Frames 0 … count − 1, of which as many are made, and held, at a time as there are threads.
 
     Parameters

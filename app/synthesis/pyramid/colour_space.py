@@ -3,9 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arrays import Real
+from ..arrays import Double, Real
 
 
 @dataclass(frozen=True)
@@ -24,17 +23,17 @@ class ColourSpace:
     --------
     >>> import numpy as np
     >>> grey = np.random.default_rng(0).random((8, 8), np.float32)
-    >>> space = ColourSpace.of(np.stack([grey, 2 * grey, 2 * grey]))
+    >>> space = ColourSpace.from_planes(np.stack([grey, 2 * grey, 2 * grey]))
     >>> np.round(space.axes[0], 4), bool(np.allclose(space.variances[1:], 0))
     (array([0.3333, 0.6667, 0.6667]), True)
     """
 
-    mean: NDArray[np.float64]
-    axes: NDArray[np.float64]
-    variances: NDArray[np.float64]
+    mean: Double
+    axes: Double
+    variances: Double
 
     @classmethod
-    def of(cls, planes: Real) -> "ColourSpace":
+    def from_planes(cls, planes: Real) -> "ColourSpace":
         """The principal axes of an image given as planes (C, H, W)."""
         mean = planes.mean(axis=(1, 2), dtype=np.float64)
         centred = [plane - np.float32(value) for plane, value in zip(planes, mean, strict=True)]
@@ -54,7 +53,7 @@ class ColourSpace:
         return _combine(self.axes.T, coordinates, self.mean)
 
 
-def _combine(weights: NDArray[np.float64], planes: Real, offsets: NDArray[np.float64]) -> Real:
+def _combine(weights: Double, planes: Real, offsets: Double) -> Real:
     """``weights @ planes + offsets``, in the calling thread."""
     result = np.empty_like(planes)
     for index, (row, offset) in enumerate(zip(weights.astype(np.float32), offsets.astype(np.float32), strict=True)):

@@ -22,7 +22,7 @@ from typing import Literal
 import numpy as np
 from numpy.random import SFC64, Generator, SeedSequence
 
-from ..arrays import Complex, Progress, Real
+from ..arrays import Complex, Progress, Real, ignore_progress
 from ..fourier.periodic import smooth_planes
 from ..parallel import Team, Work
 from .colour_space import ColourSpace
@@ -44,7 +44,7 @@ class Decomposition:
     edges: Edges = "periodic"
 
 
-class Channel:
+class ChannelBands:
     """One channel's sub-bands: a real steerable pyramid of an image, or of it with its mirror images beside it."""
 
     def __init__(self, plane: Real, decomposition: Decomposition) -> None:
@@ -63,7 +63,7 @@ class Channel:
         return values[: (height + 1) // 2, : (width + 1) // 2] if self._mirror else values
 
 
-class Sample:
+class SampleStatistics:
     """What the synthesis takes from a sample: its colours, and the ordered values of its channels and their bands.
 
     Parameters
@@ -87,14 +87,14 @@ class Sample:
         planes = h.transpose(2, 0, 1).astype(np.float32, order="C")
         if decomposition.edges == "periodic":
             planes -= smooth_planes(h, work.threads)
-        self.space = ColourSpace.of(planes)
+        self.space = ColourSpace.from_planes(planes)
         self.channels = self.space.forward(planes)
         self.pixels = [_ordered(channel, math.prod(pyramid.shape(FINEST))) for channel in self.channels]
         self.bands: dict[tuple[int, Band], Real] = {}
-        taken_apart = [Channel(channel, decomposition) for channel in self.channels]
+        taken_apart = [ChannelBands(channel, decomposition) for channel in self.channels]
 
         def analyse(item: tuple[int, Band]) -> None:
-            work.alive()
+            work.checkpoint()
             channel, band = item
             self.bands[item] = _ordered(taken_apart[channel].band(band), min(MOST, math.prod(pyramid.shape(band))))
 
@@ -114,14 +114,14 @@ class Synthesis:
     work : Work
     """
 
-    def __init__(self, sample: Sample, pyramid: SteerablePyramid, seed: int, work: Work) -> None:
+    def __init__(self, sample: SampleStatistics, pyramid: SteerablePyramid, seed: int, work: Work) -> None:
         self._sample, self._pyramid, self._work = sample, pyramid, work
         self._planes: list[Real] = [np.empty(0, np.float32)] * len(sample.pixels)
         self._spectra: list[Complex] = [np.empty(0, np.complex64)] * len(sample.pixels)
 
         def begin(channel: int) -> None:
             noise = Generator(SFC64(SeedSequence(seed, spawn_key=(channel,))))
-            self.take(channel, noise.standard_normal(pyramid.shape(FINEST), np.float32))
+            self.restart(channel, noise.standard_normal(pyramid.shape(FINEST), np.float32))
 
         work.run("noise", begin, range(len(sample.pixels)))
 
@@ -133,20 +133,20 @@ class Synthesis:
             channel, band = item
             window = self._pyramid.filter(band)
             values = window.analyse(self._spectra[channel])
-            self._work.alive()
-            match(values, self._sample.bands[item], self._work.alive)
+            self._work.checkpoint()
+            match(values, self._sample.bands[item], self._work.checkpoint)
             part = window.synthesise(values)
-            self._work.alive()
+            self._work.checkpoint()
             total = totals[channel].add(band, window, part)
             if total is not None:
-                self.take(channel, to_image(total, self._pyramid.shape(FINEST)))
+                self.restart(channel, to_image(total, self._pyramid.shape(FINEST)))
 
         self._work.run(stage, match_band, list(product(range(len(self._planes)), self._pyramid.bands)))
 
-    def take(self, channel: int, plane: Real) -> None:
+    def restart(self, channel: int, plane: Real) -> None:
         """Go on from a plane, which is given the sample's pixel histogram first."""
-        self._work.alive()
-        match(plane, self._sample.pixels[channel], self._work.alive)
+        self._work.checkpoint()
+        match(plane, self._sample.pixels[channel], self._work.checkpoint)
         self._planes[channel], self._spectra[channel] = plane, to_spectrum(plane)
 
     def channel(self, number: int) -> Real:
@@ -169,9 +169,9 @@ class Synthesis:
         distances = dict.fromkeys(self._pyramid.bands, 0.0)
 
         def measure(band: Band) -> None:
-            self._work.alive()
+            self._work.checkpoint()
             found = np.sort(self._pyramid.filter(band).analyse(self._spectra[channel]), axis=None)
-            self._work.alive()
+            self._work.checkpoint()
             asked = quantiles(self._sample.bands[channel, band], len(found))
             distances[band] = float(np.sqrt(np.square(found - asked).mean())) / (float(asked.std()) or 1)
 
@@ -195,7 +195,7 @@ def heeger_bergen(
     iterations: int = 5,
     add_smooth: bool = False,
     threads: int = 1,
-    progress: Progress = lambda stage, part: None,
+    progress: Progress = ignore_progress,
 ) -> Real:
     """Texture of any size with the pixel and sub-band histograms of an image.
 
@@ -254,7 +254,7 @@ def heeger_bergen(
     pyramid = SteerablePyramid(height, width, decomposition.scales, decomposition.orientations)
     with Team(threads) as team:
         work = Work(team, progress)
-        sample = Sample(h, decomposition, pyramid, work)
+        sample = SampleStatistics(h, decomposition, pyramid, work)
         synthesis = Synthesis(sample, pyramid, seed, work)
         for iteration in range(1, iterations + 1):
             synthesis.iterate(f"iteration {iteration}")

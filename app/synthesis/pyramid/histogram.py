@@ -5,12 +5,10 @@ values are interpolated where the sizes differ.
 """
 
 import threading
-from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arrays import Real
+from ..arrays import Checkpoint, Ints, Real
 
 CHUNK = 1 << 14  # values worked on at a time, so that what is in between stays in the cache
 
@@ -53,7 +51,7 @@ def quantiles(ordered: Real, count: int, first: int = 0, last: int | None = None
     return result
 
 
-def match(values: Real, ordered: Real, alive: Callable[[], None] = lambda: None) -> None:
+def match(values: Real, ordered: Real, checkpoint: Checkpoint = lambda: None) -> None:
     """Give values, in place, the distribution of a target; equal values are told apart by their place.
 
     Floats become whole numbers that sort alike, with their places in the lower half: sorting these whole numbers
@@ -65,7 +63,7 @@ def match(values: Real, ordered: Real, alive: Callable[[], None] = lambda: None)
         Fewer than 2³¹ of them.
     ordered : ndarray of float32, shape (n,)
         The target's values, ascending.
-    alive : callable
+    checkpoint : callable
         Called between pieces of work; what it raises stops the work.
 
     Examples
@@ -84,18 +82,18 @@ def match(values: Real, ordered: Real, alive: Callable[[], None] = lambda: None)
         key[:] = piece ^ ((piece >> 31) & 0x7FFFFFFF)  # the magnitude of negative floats counts downwards
         key <<= 32
         key |= np.arange(first, first + len(piece))
-    alive()
+    checkpoint()
     keys.sort()
     for first in range(0, flat.size, CHUNK):
-        alive()
+        checkpoint()
         place = keys[first : first + CHUNK]
         place &= 0xFFFFFFFF
         flat[place] = quantiles(ordered, flat.size, first, first + len(place))
 
 
-def _keys(count: int) -> NDArray[np.int64]:
+def _keys(count: int) -> Ints:
     """A thread's own room to sort in: fresh memory would cost as much as a third of the sorting."""
-    room: NDArray[np.int64] | None = getattr(_rooms, "keys", None)
+    room: Ints | None = getattr(_rooms, "keys", None)
     if room is None or len(room) < count:
         _rooms.keys = room = np.empty(count, np.int64)
     return room[:count]

@@ -20,19 +20,16 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.random import SFC64, Generator, SeedSequence
-from numpy.typing import NDArray
 
-from ..arrays import Progress, Real
+from ..arrays import Index, Progress, Real, ignore_progress
 from ..parallel import Team
-from .window_search import PatchSearch
-
-Index = NDArray[np.intp]
+from .window_search import WindowSearch
 
 SEED_SIDE = 3  # pixels
 PIXELS = 4096  # looked at between two calls of the progress
 
 
-class Grown(NamedTuple):
+class Growth(NamedTuple):
     """A texture with where each pixel comes from, and when it came."""
 
     texture: Real
@@ -49,8 +46,8 @@ def efros_leung(
     tolerance: float = 0.1,
     seed: int = 0,
     threads: int = 1,
-    progress: Progress = lambda stage, part: None,
-) -> Grown:
+    progress: Progress = ignore_progress,
+) -> Growth:
     """Grow a texture around 3 × 3 pixels taken from the sample at random.
 
     Parameters
@@ -122,7 +119,7 @@ def efros_leung(
     across = np.arange(side)
     window = (across[:, None] * canvas.shape[1] + across).ravel()
     with Team(threads) as team:
-        search = PatchSearch(h, half_patch, team, partial(progress, "patches"))
+        search = WindowSearch(h, half_patch, team, partial(progress, "patches"))
         done = len(initial)
         for step in steps:
             for ranks in np.split(step, range(search.batch, len(step), search.batch)):
@@ -134,7 +131,7 @@ def efros_leung(
                 fill(sequence[ranks], *np.divmod(drawn, h.shape[1]))
                 done += len(ranks)
     progress("growth", 1.0)
-    return Grown(np.ascontiguousarray(canvas[inside]), copied, order)
+    return Growth(np.ascontiguousarray(canvas[inside]), copied, order)
 
 
 def growth_order(height: int, width: int, half_patch: int, rng: Generator) -> Index:
@@ -208,7 +205,7 @@ def verbatim_share(copied: Index) -> float:
     return 100 * float(along.mean())
 
 
-def border_share(grown: Grown, height: int, width: int, half_patch: int) -> float:
+def border_share(grown: Growth, height: int, width: int, half_patch: int) -> float:
     """Per cent of the pixels drawn that came from where the sample holds a part of the window only.
 
     Parameters
@@ -222,7 +219,7 @@ def border_share(grown: Grown, height: int, width: int, half_patch: int) -> floa
     --------
     >>> import numpy as np
     >>> copied, order = np.moveaxis(np.indices((5, 5)), 0, 2), np.arange(25).reshape(5, 5)
-    >>> border_share(Grown(np.zeros((5, 5, 1)), copied, order), 5, 5, half_patch=1)  # but for rows 2 and 3: 6 of 16
+    >>> border_share(Growth(np.zeros((5, 5, 1)), copied, order), 5, 5, half_patch=1)  # but for rows 2 and 3: 6 of 16
     62.5
     """
     initial = min(SEED_SIDE, grown.order.shape[0]) * min(SEED_SIDE, grown.order.shape[1])

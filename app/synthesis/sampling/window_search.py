@@ -15,18 +15,12 @@ Efros, Leung, "Texture Synthesis by Non-parametric Sampling", ICCV 1999; Higham,
 Algorithms", 2002, section 3.1, for the bound on the errors of a scalar product.
 """
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from numpy.typing import NDArray
 
-from ..arrays import Real
+from ..arrays import Double, Index, Mask, PartDone, Real
 from ..elementary import exp
 from ..parallel import Team
-
-Double = NDArray[np.float64]
-Index = NDArray[np.intp]
 
 PRODUCT = 1 << 18  # multiplications in one of them, few enough for BLAS to stay in the calling thread
 BATCH = 1 << 29  # multiplications for a batch of patches: a tenth of a second or two
@@ -61,7 +55,7 @@ def gaussian_window(half_patch: int) -> Double:
     return window
 
 
-class PatchSearch:
+class WindowSearch:
     """All patches of an image, to be searched again and again.
 
     There is one around every pixel. Around those near the border it reaches beyond the image, and is compared only
@@ -79,7 +73,7 @@ class PatchSearch:
         Called while the patches are laid out.
     """
 
-    def __init__(self, h: Real, half_patch: int, team: Team, progress: Callable[[float], None]) -> None:
+    def __init__(self, h: Real, half_patch: int, team: Team, progress: PartDone) -> None:
         side, channels = 2 * half_patch + 1, h.shape[2]
         self._team = team
         self._weights = gaussian_window(half_patch).ravel()
@@ -97,7 +91,7 @@ class PatchSearch:
         # Of a product of this many terms, and of the roundings of its factors and of what it is compared with.
         self._error = 1.01 * UNIT * (self._tiles.shape[1] + 16)
 
-    def _tiled(self, rows: Real, progress: Callable[[float], None]) -> Real:
+    def _tiled(self, rows: Real, progress: PartDone) -> Real:
         """The distinct patches, (s, s²) with s centred, and (0, `OUTSIDE`), as (tiles, terms, patches in a tile)."""
         pixels, channels = len(self._weights), len(self._centre)
         terms = pixels * (channels + 1)
@@ -122,7 +116,7 @@ class PatchSearch:
         """How many patches are best searched for at a time."""
         return max(1, min(DISTANCES // len(self), BATCH // self._tiles.size))
 
-    def draw(self, values: Real, known: NDArray[np.bool_], tolerance: float, chances: Double) -> Index:
+    def draw(self, values: Real, known: Mask, tolerance: float, chances: Double) -> Index:
         """For each of M patches one of the image's patches, uniformly among those within (1 + ε) of the nearest.
 
         Parameters

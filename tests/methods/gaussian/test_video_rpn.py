@@ -10,7 +10,7 @@ from app.images.video.reader import read_video
 from app.methods.gaussian.video_rpn import VIDEO_RPN
 from app.methods.model import Context, Film, Size, Source
 from app.methods.output.films import film_memory
-from app.synthesis.gaussian.video_rpn import MovingField, video_rpn
+from app.synthesis.gaussian.video_rpn import VideoNoiseField, video_rpn
 from app.synthesis.parallel import Team
 
 
@@ -86,7 +86,7 @@ def test_the_memory_that_it_declares_is_what_it_takes_at_most_and_not_far_above(
     try:
         with Team(2) as team:
             options = {"seed": 1, "alpha": 0.1, "profile": "bump", "progress": lambda stage, part: None}
-            for _ in MovingField(frames, texture, team=team, **options).frames():
+            for _ in VideoNoiseField(frames, texture, team=team, **options).frames():
                 pass
         peak = tracemalloc.get_traced_memory()[1] + frames.nbytes
     finally:

@@ -9,7 +9,7 @@ from scipy import stats
 from app.synthesis.fourier.spectral import half_spectrum
 from app.synthesis.fourier.spot_noise import sample_spot
 from app.synthesis.gaussian.adsn import adsn, adsn_of_spot, white_noise
-from app.synthesis.gaussian.dsn import POINTS, counts, dsn, excess_kurtosis, impulses, shape, standard_spot
+from app.synthesis.gaussian.dsn import POINTS, counts, dsn, excess_kurtosis, impulses, spot_shape, standard_spot
 from tests.synthesis.images import correlations, image, whole
 from tests.synthesis.stopping import stops_at
 
@@ -139,7 +139,7 @@ def test_a_constant_sample_gives_itself_back(value, size):
 
 
 def test_the_disc_is_binary_and_of_its_radius():
-    disc = shape("disc", 64, 65, 10)
+    disc = spot_shape("disc", 64, 65, 10)
     assert set(np.unique(disc)) == {0, 1}
     # Gauss's circle problem: as many pixels as the area, but for some of the 2πr on its border
     assert abs(disc.sum() - np.pi * 100) < 2 * np.pi * 10 / 3
@@ -148,7 +148,7 @@ def test_the_disc_is_binary_and_of_its_radius():
 
 
 def test_the_gaussian_has_half_the_radius_as_its_deviation():
-    spot = shape("gaussian", 65, 65, 12).astype(np.float64)
+    spot = spot_shape("gaussian", 65, 65, 12).astype(np.float64)
     x = np.arange(65) - 32
     assert np.sqrt((spot.sum(0) * x**2).sum() / spot.sum()) == pytest.approx(6, rel=1e-3)
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from app.synthesis.gaussian.video_phase import pair
-from app.synthesis.gaussian.video_power import BAND, FilmPower
-from app.synthesis.gaussian.video_rpn import MovingField
+from app.synthesis.gaussian.video_phase import conjugate_rows
+from app.synthesis.gaussian.video_power import BAND, VideoPower
+from app.synthesis.gaussian.video_rpn import VideoNoiseField
 from app.synthesis.parallel import Team
 
 SHAPES = [(4, 6, 8), (5, 7, 11), (6, 1, 9), (3, 2, 5), (8, 9, 6), (7, 4, 1)]
@@ -23,7 +23,7 @@ def field_of(film, shape, seed=2):
         pass
 
     with Team(2) as team:
-        return MovingField(film, shape, seed=seed, alpha=0.1, profile="bump", team=team, progress=progress)
+        return VideoNoiseField(film, shape, seed=seed, alpha=0.1, profile="bump", team=team, progress=progress)
 
 
 def squares(film):
@@ -72,9 +72,9 @@ def test_the_variance_is_that_of_the_video_whose_spectrum_it_was_given(shape):
     centred = film - film.mean((0, 1, 2), dtype=np.float64)
     spectrum = np.fft.rfftn(centred, axes=(0, 1, 2)).astype(np.complex64)
     frames, height, width = shape
-    power = FilmPower((frames, height, width // 2 + 1), width)
+    power = VideoPower((frames, height, width // 2 + 1), width)
     for row in range(height // 2 + 1):
-        rows = pair(row, height)
+        rows = conjugate_rows(row, height)
         for channel in range(3):
             power(row, rows, spectrum[..., channel][:, rows])
     assert power.variance == pytest.approx(centred.var((0, 1, 2)).sum(), rel=1e-5)

@@ -11,8 +11,8 @@ from app.synthesis.fourier.periodic import periodic_component
 from app.synthesis.fourier.spectral import half_spectrum
 from app.synthesis.fourier.spot import window
 from app.synthesis.gaussian.rpn import random_phase, rpn
-from app.synthesis.gaussian.video_phase import pair, rows_of_phase
-from app.synthesis.gaussian.video_rpn import jump_share, middle, video_rpn
+from app.synthesis.gaussian.video_phase import conjugate_rows, random_phase_rows
+from app.synthesis.gaussian.video_rpn import centre_video, jump_share, video_rpn
 from tests.profiles import examples
 from tests.synthesis.images import image
 from tests.synthesis.stopping import stops_at
@@ -44,7 +44,7 @@ def periodic(film):
 
 def spot(film, shape):
     """The extended spot frame by frame, double precision."""
-    p = periodic(middle(film, shape))
+    p = periodic(centre_video(film, shape))
     if p.shape[:3] == shape:
         return p
     count, channels = len(p), film.shape[3]
@@ -87,7 +87,7 @@ def keeps(film, z):
         np.testing.assert_allclose(
             after[..., c] * after[..., d].conj(), before[..., c] * before[..., d].conj(), atol=4e-4 * scale**2
         )
-    expected = middle(film, z.shape[:3]).mean((0, 1, 2), dtype=np.float64)
+    expected = centre_video(film, z.shape[:3]).mean((0, 1, 2), dtype=np.float64)
     np.testing.assert_allclose(z.mean((0, 1, 2), dtype=np.float64), expected, rtol=1e-6)
 
 
@@ -125,7 +125,7 @@ def whole_phase(shape, seed):
     flat = half_spectrum(random_phase, height, width, seed)
     phase = np.empty((frames, height, width // 2 + 1), np.complex64)
     for row in range(height // 2 + 1):
-        phase[:, pair(row, height)] = rows_of_phase(shape, row, flat, seed)
+        phase[:, conjugate_rows(row, height)] = random_phase_rows(shape, row, flat, seed)
     return phase
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.synthesis.parallel import Team, Work
-from app.synthesis.patchwork.best_places import Patches, best_matches
+from app.synthesis.patchwork.best_places import PatternPatches, best_matches
 from tests.synthesis.images import image
 from tests.synthesis.stopping import stops_at
 
@@ -19,7 +19,7 @@ def patches_of(height, width, texture_shape, count=12, seed=0):
     tops = np.maximum(centres - rng.integers(0, 9, (count, 2)), 0)
     bottoms = np.minimum(centres + rng.integers(1, 9, (count, 2)), size)
     boxes = np.stack([tops[:, 0], bottoms[:, 0], tops[:, 1], bottoms[:, 1]], axis=1)
-    return Patches(centres, boxes, centres - tops, shape - (bottoms - centres))
+    return PatternPatches(centres, boxes, centres - tops, shape - (bottoms - centres))
 
 
 def matches(texture, pattern, patches, candidates, *, seed=0, threads=1, peak=255, progress=lambda stage, part: None):

@@ -5,7 +5,7 @@ import pytest
 
 from app.synthesis.patchwork.cell_shapes import REACH
 from app.synthesis.patchwork.cells import jittered_cells
-from app.synthesis.patchwork.patchwork import Patchwork, painted, patchwork
+from app.synthesis.patchwork.patchwork import Patchwork, paint_cells, patchwork
 from tests.synthesis.full_sums import mirrored
 from tests.synthesis.images import image
 from tests.synthesis.stopping import stops_at
@@ -145,7 +145,7 @@ def test_rows_can_be_made_in_any_order():
 def test_the_picture_of_cells_mixes_their_colours_by_the_weights():
     cells = laid(image(120, 120)).cells
     colours = np.random.default_rng(0).uniform(0, 1, (cells.count, 3)).astype(np.float32)
-    soft, hard = (painted(cells, colours, 0, SIDE, soft=soft) for soft in (True, False))
+    soft, hard = (paint_cells(cells, colours, 0, SIDE, soft=soft) for soft in (True, False))
     palette = {tuple(colour) for colour in colours.tolist()}
     assert {tuple(colour) for colour in hard.reshape(3, -1).T.tolist()} <= palette
     inside = [tuple(centre) for centre in cells.centres if ((centre >= 0) & (centre < SIDE)).all()]

@@ -6,7 +6,7 @@ import pytest
 from app.synthesis.parallel import Team, Work
 from app.synthesis.patchwork.cell_match import match_cells
 from app.synthesis.patchwork.cells import jittered_cells, least_sample
-from app.synthesis.patchwork.transfer import rescaled, transfer
+from app.synthesis.patchwork.transfer import rescale, transfer
 from tests.synthesis.images import image
 from tests.synthesis.stopping import stops_at
 
@@ -137,13 +137,13 @@ def test_the_least_texture_holds_every_patch(sharpness, grid):
 
 def test_rescaled_colours_have_the_textures_mean_and_range():
     texture, pattern = image(30, 40) / 2 + 20, image(20, 50, seed=1) / 3
-    made = rescaled(pattern, texture)
+    made = rescale(pattern, texture)
     assert made.mean((0, 1)) == pytest.approx(texture.mean((0, 1)), rel=1e-5)
     assert np.ptp(made, (0, 1)) == pytest.approx(np.ptp(texture, (0, 1)), rel=1e-5)
 
 
 def test_a_flat_channel_of_the_pattern_takes_the_textures_mean():
-    made = rescaled(np.full((5, 6, 3), 7, np.float32), image(30, 40))
+    made = rescale(np.full((5, 6, 3), 7, np.float32), image(30, 40))
     assert np.ptp(made, (0, 1)).max() == 0
     assert made[0, 0] == pytest.approx(image(30, 40).mean((0, 1)), rel=1e-5)
 

@@ -20,7 +20,7 @@ def test_every_frame_asked_for_lies_inside_the_clip_up_to_the_longest_interval(f
     for interval in {1, max(1, longest // 2), longest}:
         transitions = drawn(40, clip, frames, interval, loop)
         for frame in range(frames):
-            mix = transitions.at(frame)
+            mix = transitions.mix(frame)
             assert min(mix.first.min(), mix.second.min()) >= 0
             assert max(mix.first.max(), mix.second.max()) < clip
 
@@ -35,7 +35,7 @@ def test_beyond_the_longest_interval_some_draw_asks_for_a_frame_that_there_is_no
 def test_transition_points_are_about_an_interval_apart_and_jittered(loop):
     """Equal parts of at most 18 frames: points in their middle halves are 9 to 27 frames apart, 18 on average."""
     transitions = drawn(400, 72, 72, 18, loop)
-    whole = np.array([transitions.at(frame).beta == 0 for frame in range(72)])
+    whole = np.array([transitions.mix(frame).beta == 0 for frame in range(72)])
     assert (whole.sum(0) == 4).all()
     gaps = np.concatenate([np.diff(np.flatnonzero(of_one)) for of_one in whole.T])
     assert gaps.min() >= 9
@@ -52,7 +52,7 @@ def test_every_part_plays_on_frame_by_frame_until_it_counts_for_nothing(loop):
     frames = 60
     transitions = drawn(300, 48, frames, 12, loop)
     for frame in range(frames if loop else frames - 1):
-        now, then = transitions.at(frame), transitions.at((frame + 1) % frames)
+        now, then = transitions.mix(frame), transitions.mix((frame + 1) % frames)
         goes_on = (then.first == now.first + 1) & ((then.second == now.second + 1) | (now.beta == 0))
         replaced = (then.first == now.second + 1) & (then.beta == 0)
         assert (goes_on | replaced).all()
@@ -61,7 +61,7 @@ def test_every_part_plays_on_frame_by_frame_until_it_counts_for_nothing(loop):
 
 def test_without_loop_the_last_frame_does_not_continue_in_the_first():
     transitions = drawn(300, 48, 60, 12, loop=False)
-    last, first = transitions.at(59), transitions.at(0)
+    last, first = transitions.mix(59), transitions.mix(0)
     assert (first.first != last.first + 1).mean() > 0.5
 
 
@@ -78,7 +78,7 @@ def test_mean_and_deviation_are_the_clips_in_every_frame_also_amid_transitions(l
     transitions = drawn(60, 72, 72, 18, loop)
     amid = []
     for frame in range(0, 72, 5):
-        mix = transitions.at(frame)
+        mix = transitions.mix(frame)
         first, second = film[mix.first] - average, film[mix.second] - average
         made = mix.alpha[:, None] * first + mix.beta[:, None] * second
         assert abs(made.mean()) < 0.02
@@ -93,7 +93,7 @@ def test_mean_and_deviation_are_the_clips_in_every_frame_also_amid_transitions(l
 def test_the_weights_are_the_cosines_of_the_report():
     """w₁ + w₂ = 1, so α / (α + β) is w₁ = ½ + ½ cos(πu) with u = (t − p_i) / (p_{i+1} − p_i)."""
     transitions = drawn(1, 72, 72, 18, loop=True)
-    mixes = [transitions.at(frame) for frame in range(72)]
+    mixes = [transitions.mix(frame) for frame in range(72)]
     begin, end = [frame for frame in range(72) if mixes[frame].beta[0] == 0][:2]
     for frame in range(begin, end):
         u = (frame - begin) / (end - begin)

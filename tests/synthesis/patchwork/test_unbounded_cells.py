@@ -6,12 +6,12 @@ from scipy import ndimage
 
 from app.synthesis.parallel import Team, Work
 from app.synthesis.patchwork.cells import jittered_cells
-from app.synthesis.patchwork.patchwork import Patchwork, painted, patchwork
+from app.synthesis.patchwork.patchwork import Patchwork, paint_cells, patchwork
 from app.synthesis.patchwork.transfer import transfer
 from app.synthesis.patchwork.transitions import Transitions
-from app.synthesis.patchwork.unbounded_cells import ENDS, joined_cells, radius
-from app.synthesis.patchwork.video_mosaic import Mosaic
-from app.synthesis.patchwork.video_patchwork import Clip, VideoPatchwork
+from app.synthesis.patchwork.unbounded_cells import ENDS, cells_with_reach, radius
+from app.synthesis.patchwork.video_mosaic import VideoMosaic
+from app.synthesis.patchwork.video_patchwork import PaddedClip, VideoPatchwork
 from tests.synthesis.full_sums import cells_at, mirrored, patchwork_sum, transfer_sum
 from tests.synthesis.stopping import stops_at
 
@@ -28,7 +28,7 @@ def grain(height, width, channels=1, deviation=36, seed=0):
 
 def laid(height, width, grid, sharpness, tileable, reach="all", seed=1):
     cells = jittered_cells(height, width, grid=grid, sharpness=sharpness, tileable=tileable, seed=seed)
-    return cells, joined_cells(cells, reach, tileable=tileable)
+    return cells, cells_with_reach(cells, reach, tileable=tileable)
 
 
 def whole(made):
@@ -130,7 +130,7 @@ def test_the_picture_of_the_cells_shows_the_same_weights():
     for cell, _, _, weight in cells_at(near, True):
         total += colours[cell] * weight[:, :, None]
         weights += weight
-    found = painted(cells, colours, 0, 96).transpose(1, 2, 0)
+    found = paint_cells(cells, colours, 0, 96).transpose(1, 2, 0)
     np.testing.assert_allclose(found, total / weights[:, :, None], atol=1e-4)
 
 
@@ -176,13 +176,13 @@ def test_work_stops_between_patches_when_the_progress_raises():
     _, cells = laid(150, 90, 10, 2, True)
     calls = []
 
-    def alive():
+    def checkpoint():
         calls.append(1)
         if len(calls) == 5:
             raise InterruptedError
 
     with pytest.raises(InterruptedError):
-        Patchwork(h, cells).rows(0, 150, alive)
+        Patchwork(h, cells).rows(0, 150, checkpoint)
     assert len(calls) == 5
 
 
@@ -213,7 +213,7 @@ def test_a_frame_of_a_video_patchwork_is_the_sum_over_every_cell(sharpness, tile
     mean = film.mean((0, 1, 2), np.float64)
     transitions = Transitions(near.count, 12, 12, 4, loop=True, rng=rng)
     means = np.tile(mean.astype(np.float32), (near.count, 1))
-    made = VideoPatchwork(Clip(film, cells.margin(sources, 90, 80)), cells, sources, transitions, means)
+    made = VideoPatchwork(PaddedClip(film, cells.margin(sources, 90, 80)), cells, sources, transitions, means)
     expected = patchwork_sum(film[0], near, sources, tileable, mean)
     assert deviation(made.frame(5), expected) < HALF_A_LEVEL
 
@@ -224,7 +224,7 @@ def test_a_frame_of_a_video_transfer_is_equation_seven_with_every_cell(sharpness
     near, cells = laid(64, 72, 8, sharpness, False)
     places = near.sources(90, 80, 3)
     transitions = Transitions(near.count, 12, 12, 4, loop=True, rng=np.random.default_rng(0))
-    made = VideoPatchwork(Clip(film, cells.margin(places, 90, 80)), cells, places, transitions)
+    made = VideoPatchwork(PaddedClip(film, cells.margin(places, 90, 80)), cells, places, transitions)
     expected, _ = transfer_sum(film[0], near, places)
     assert deviation(made.frame(5), expected) < HALF_A_LEVEL
 
@@ -236,8 +236,8 @@ def test_a_frame_of_a_mosaic_is_the_sum_over_every_point_of_space_and_time(sharp
     rng = np.random.default_rng(0)
     film = np.stack([grain(60, 62, 1, seed=seed) for seed in range(30)]).round().astype(np.uint8)
     shape, grid, interval = (18, 48, 50), 16, 6
-    made = Mosaic(
-        Clip(film).planes,
+    made = VideoMosaic(
+        PaddedClip(film).planes,
         shape,
         grid=grid,
         interval=interval,

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from app.synthesis.patchwork.cells import Window
-from app.synthesis.patchwork.video_mosaic import Mosaic, needed
-from app.synthesis.patchwork.video_patchwork import Clip
+from app.synthesis.patchwork.video_mosaic import VideoMosaic, least_length
+from app.synthesis.patchwork.video_patchwork import PaddedClip
 from tests.synthesis.films import noise, size_of, steps, still, waves
 
 SIZE = 64
@@ -13,8 +13,10 @@ SIZE = 64
 
 def mosaic(film, frames=40, *, size=SIZE, interval=10, loop=True, tileable=True, sharpness=6, seed=4):
     rng = np.random.default_rng(seed)
-    planes, shape = Clip(film).planes, (frames, size, size)
-    return Mosaic(planes, shape, grid=16, interval=interval, sharpness=sharpness, loop=loop, tileable=tileable, rng=rng)
+    planes, shape = PaddedClip(film).planes, (frames, size, size)
+    return VideoMosaic(
+        planes, shape, grid=16, interval=interval, sharpness=sharpness, loop=loop, tileable=tileable, rng=rng
+    )
 
 
 def made(film, frames=40, **options):
@@ -34,7 +36,7 @@ def test_mean_and_deviation_are_the_clips_in_cores_and_in_joins():
     frames = range(0, 40, 5)
     out = np.stack([synthesis.frame(number)[..., 0] for number in frames])
     window = Window(0, SIZE, 0, SIZE)
-    painted = np.stack([synthesis.painted(number, window, np.repeat(colours, 3, 1))[..., 0] for number in frames])
+    painted = np.stack([synthesis.paint(number, window, np.repeat(colours, 3, 1))[..., 0] for number in frames])
     joins = np.abs(painted - 0.5) < 0.1
     assert joins.sum() > 1000
     for where in (joins, ~joins):
@@ -66,7 +68,7 @@ def test_tileable_frames_have_no_seam(axis):
 @pytest.mark.parametrize(("loop", "tileable"), [(True, True), (False, False)], ids=["circular", "ends"])
 @pytest.mark.parametrize("sharpness", [1, 40])
 def test_a_clip_as_large_as_is_needed_is_large_enough_whatever_the_seed(loop, tileable, sharpness):
-    side, length = needed(70, 16), needed(30, 5)
+    side, length = least_length(70, 16), least_length(30, 5)
     film = noise(length, side, side)
     for seed in range(3):
         synthesis = mosaic(film, 30, size=70, interval=5, loop=loop, tileable=tileable, sharpness=sharpness, seed=seed)
@@ -85,7 +87,7 @@ def test_a_constant_clip_gives_that_constant():
 def test_cells_are_painted_alike_in_any_window():
     synthesis = mosaic(noise(), tileable=False)
     colours = np.random.default_rng(2).uniform(0, 255, (len(synthesis.sources), 3)).astype(np.float32)
-    whole = synthesis.painted(5, Window(0, SIZE, 0, SIZE), colours)
-    part = synthesis.painted(5, Window(20, 31, 40, SIZE), colours)
+    whole = synthesis.paint(5, Window(0, SIZE, 0, SIZE), colours)
+    part = synthesis.paint(5, Window(20, 31, 40, SIZE), colours)
     np.testing.assert_allclose(whole[20:31, 40:], part, rtol=1e-4)
     assert whole.std() > 20

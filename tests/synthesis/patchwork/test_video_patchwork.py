@@ -9,7 +9,7 @@ from app.synthesis.patchwork.patchwork import Patchwork
 from app.synthesis.patchwork.transfer import transfer
 from app.synthesis.patchwork.transitions import Transitions
 from app.synthesis.patchwork.video_cells import FixedCells
-from app.synthesis.patchwork.video_patchwork import Clip, VideoPatchwork, in_order
+from app.synthesis.patchwork.video_patchwork import PaddedClip, VideoPatchwork, frames_in_order
 from tests.synthesis.films import noise, size_of, steps, still, waves
 from tests.synthesis.stopping import StopError
 
@@ -28,7 +28,7 @@ def patchwork(film, cells, frames=40, loop=True):
     _, height, width, channels = film.shape
     sources = cells.sources(height, width, 3)
     mean = film.mean((0, 1, 2)).astype(np.float32)
-    clip = Clip(film, cells.margin(sources, height, width))
+    clip = PaddedClip(film, cells.margin(sources, height, width))
     means = np.broadcast_to(mean, (cells.count, channels))
     return VideoPatchwork(clip, cells, sources, in_time(film, cells, frames, loop), means)
 
@@ -100,7 +100,7 @@ def test_local_means_give_the_transfer_of_a_still_clips_frame():
         work = Work(team, lambda stage, part: None)
         expected = transfer(film[0].astype(np.float32), pattern, cells, peak=255, candidates=20, seed=1, work=work)
     places = expected.matches.places
-    clip = Clip(film, cells.margin(places, 90, 80))
+    clip = PaddedClip(film, cells.margin(places, 90, 80))
     frame = VideoPatchwork(clip, cells, places, in_time(film, cells)).frame(11)
     assert np.abs(frame.clip(0, 255) - expected.output).max() < 1
 
@@ -123,7 +123,7 @@ def test_cells_are_painted_alike_in_any_window():
     film, cells = noise(), laid()
     sources, transitions = cells.sources(SIZE, SIZE, 3), in_time(film, cells)
     whole, right = (
-        FixedCells(cells, window, sources, transitions, film.shape[:3]).painted(7)
+        FixedCells(cells, window, sources, transitions, film.shape[:3]).paint(7)
         for window in (cells.plane, Window(0, SIZE, SIZE - 1, SIZE))
     )
     assert np.abs(whole[:, -1:] - right).max() < 1
@@ -140,7 +140,7 @@ def test_frames_come_in_order_and_no_more_are_held_than_there_are_threads(thread
         made.append(number)
         return np.full((1, 1, 1), number, np.float32)
 
-    for expected, found in enumerate(in_order(frame, 8, threads, parts.append)):
+    for expected, found in enumerate(frames_in_order(frame, 8, threads, parts.append)):
         assert found[0, 0, 0] == expected
         given += 1
         assert len(made) - given < threads
@@ -154,4 +154,4 @@ def test_what_the_progress_raises_ends_the_frames():
         raise StopError
 
     with pytest.raises(StopError):
-        list(in_order(lambda number: np.zeros((1, 1, 1), np.float32), 8, 2, stop))
+        list(frames_in_order(lambda number: np.zeros((1, 1, 1), np.float32), 8, 2, stop))

@@ -5,7 +5,7 @@ import pytest
 
 from app.synthesis.fourier.periodic import periodic_component, smooth_component
 from app.synthesis.parallel import Team, Work
-from app.synthesis.pyramid.heeger_bergen import Decomposition, Sample, Synthesis, heeger_bergen
+from app.synthesis.pyramid.heeger_bergen import Decomposition, SampleStatistics, Synthesis, heeger_bergen
 from app.synthesis.pyramid.pyramid import SteerablePyramid
 from tests.synthesis.pyramid import plain_heeger_bergen as plain
 from tests.synthesis.stopping import stops_at
@@ -32,7 +32,7 @@ def begun(h, height=None, width=None, edges="periodic", **options):
         height or h.shape[0], width or h.shape[1], decomposition.scales, decomposition.orientations
     )
     work = Work(Team(2), lambda stage, part: None)
-    sample = Sample(h, decomposition, pyramid, work)
+    sample = SampleStatistics(h, decomposition, pyramid, work)
     return sample, Synthesis(sample, pyramid, 1, work)
 
 
@@ -87,7 +87,7 @@ def test_the_sample_itself_is_a_fixed_point(size):
     """
     sample, synthesis = begun(blobs(*size))
     for channel, plane in enumerate(sample.channels):
-        synthesis.take(channel, plane.copy())
+        synthesis.restart(channel, plane.copy())
     assert max(synthesis.distances("distances").values()) < 1e-5
     for iteration in range(3):
         synthesis.iterate(str(iteration))

@@ -10,7 +10,7 @@ from scipy import ndimage
 
 from app.synthesis.parallel import Team
 from app.synthesis.sampling.efros_leung import border_share, efros_leung, growth_order, verbatim_share
-from app.synthesis.sampling.window_search import PatchSearch, gaussian_window
+from app.synthesis.sampling.window_search import WindowSearch, gaussian_window
 from tests.profiles import examples
 
 
@@ -124,7 +124,7 @@ def test_a_patch_is_drawn_uniformly_among_all_positions_within_the_tolerance():
     chances = (np.arange(3 * len(near)) + 0.5) / (3 * len(near))
     with Team(1) as team:
         values, masks = (np.repeat(a.reshape(1, 9, -1), len(chances), 0) for a in (window, known))
-        drawn = PatchSearch(h, n, team, lambda part: None).draw(values, masks[:, :, 0], tolerance, chances)
+        drawn = WindowSearch(h, n, team, lambda part: None).draw(values, masks[:, :, 0], tolerance, chances)
     assert (np.bincount(drawn, minlength=h.size)[near] == 3).all()
 
 
@@ -132,7 +132,7 @@ def test_equal_patches_are_searched_once():
     stripes = np.tile(np.arange(4, dtype=np.float32), (30, 5))[:, :, None]
     with Team(1) as team:
         # 4 inside; within one pixel of the border they differ: above, below and not, times left, right and not
-        assert len(PatchSearch(stripes, 1, team, lambda part: None)) == 3 * (4 + 2)
+        assert len(WindowSearch(stripes, 1, team, lambda part: None)) == 3 * (4 + 2)
 
 
 @pytest.mark.parametrize("h", [sample(), np.full((20, 20, 3), 7, np.float32)], ids=["grain", "constant"])
