@@ -11,7 +11,7 @@ export PIP_NO_INPUT := 1
 
 .DEFAULT_GOAL := help
 .PHONY: help setup run dev check fix test lint lint-python lint-templates lint-js types test-js test-fast programs chaos load bench \
-	lock readme-picture clean
+	lock dist readme-picture clean
 
 help: ## list these targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-15s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -71,6 +71,10 @@ load: $(VENV)/.ready-dev ## only the tests that send sustained load
 
 bench: $(VENV)/.ready-dev ## measure kernels and service on this machine and print one table
 	$(BIN)/python -m benchmarks
+
+dist: $(VENV)/.ready-dev ## build both wheels and their source distributions into ./dist
+	$(BIN)/python -m hatchling build
+	cd app/synthesis && $(abspath $(BIN))/python -m hatchling build --directory $(CURDIR)/dist
 
 readme-picture: programs ## make docs/gallery.png anew with a server and a browser
 	$(WITH_BROWSER) $(BIN)/python scripts/readme_picture.py

@@ -1,3 +1,1 @@
 """Microtexture: texture synthesis by example, as a web service, a REST API and a command line."""
-
-__version__ = "0.1.0"

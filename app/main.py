@@ -11,13 +11,13 @@ from fastapi import FastAPI
 from starlette.middleware import Middleware
 from starlette.staticfiles import StaticFiles
 
-from app import __version__
 from app.executor.dask import DaskExecutor
 from app.experiments.service import Service
 from app.samples import require_files
 from app.settings import ROOT, Settings
 from app.store.blobs import FileBlobs
 from app.store.sql import SqlStore
+from app.synthesis import __version__
 from app.web import health, problems, uploads
 from app.web.api import docs, events, experiments, methods, outputs, samples, structure, synthesize
 from app.web.api.openapi import document

@@ -71,7 +71,7 @@ def imports(module: str, *, lazy: bool = True) -> frozenset[str]:
 
 
 def layer(module: str) -> int:
-    if module == "app":  # holds the version and nothing else
+    if module == "app":  # holds nothing
         return 0
     return next(height for height, names in enumerate(LAYERS) if {module, ".".join(module.split(".")[:2])} & names)
 

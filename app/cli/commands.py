@@ -7,9 +7,9 @@ from typing import Annotated
 
 import typer
 
-from app import __version__
 from app.cli.problems import EXIT_CODES, FAILED, plain_errors
 from app.errors import InvalidInputError
+from app.synthesis import __version__
 
 
 def _version(asked: bool) -> None:

@@ -7,7 +7,7 @@ from platform import machine
 
 import numpy as np
 
-from app import __version__
+from app.synthesis import __version__
 
 CPU = "model name"  # as /proc/cpuinfo has it on x86; elsewhere the architecture has to do
 

@@ -7,8 +7,8 @@ import sys
 import numpy as np
 import scipy
 
-from app import __version__
 from app.experiments.environment import environment
+from app.synthesis import __version__
 
 
 def test_versions_are_those_of_this_process() -> None:

@@ -16,9 +16,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from app import __version__
 from app.methods.registry import METHODS
 from app.settings import ROOT
+from app.synthesis import __version__
 from tests.packaging.environments import Environment, build
 
 pytestmark = pytest.mark.slow

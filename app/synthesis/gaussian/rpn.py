@@ -62,7 +62,7 @@ def random_phase(height: int, width: int, block: Block, source: SFC64) -> Comple
 
     Examples
     --------
-    >>> from app.synthesis.fourier.spectral import random_bits
+    >>> from microtexture.fourier.spectral import random_bits
     >>> phase = random_phase(4, 6, (0, 4), random_bits(1, (0, 4)))
     >>> phase.shape, complex(phase[0, 0]), bool(np.allclose(np.abs(phase), 1))
     ((4, 4), (1+0j), True)
