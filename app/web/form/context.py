@@ -3,7 +3,6 @@
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
-from urllib.parse import urlencode
 
 from app.errors import NotFoundError
 from app.experiments.model import Sample
@@ -13,6 +12,7 @@ from app.methods.model import Method, first_size
 from app.methods.params import StillParams
 from app.methods.registry import METHODS
 from app.samples import BundledSample
+from app.web.form.address import sample_url
 from app.web.form.draft import SIZES, Draft
 from app.web.form.inputs import ORDINALS, SIDES, Choices, further, most, optional, prefix
 from app.web.form.parameters import MOVING, SHARED, form_name, own_fields, shared
@@ -149,7 +149,7 @@ def _method(method: Method, draft: Draft, sample: Sample, choices: Choices) -> M
 
 def _clips(method: Method, sample: Sample, choices: Choices) -> dict[str, str]:
     """Lead to the form of each bundled clip; where the method takes a still picture besides, with this one as that."""
-    query = {"method": method.name}
+    values = {"method": method.name}
     if still := [number for number in range(2, most(method) + 1) if not method.slot(number - 1).moving]:
-        query[ORDINALS[still[0] - 1]] = sample.id
-    return {clip.title or clip.id: f"/samples/{clip.id}?{urlencode(query)}" for clip in choices.samples if clip.moving}
+        values[f"{prefix(still[0])}sample"] = sample.id
+    return {clip.title or clip.id: sample_url(clip.id, values) for clip in choices.samples if clip.moving}

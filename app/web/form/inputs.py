@@ -1,11 +1,10 @@
 """The inputs in the form of a sample's page: the page's own sample, and for some methods further ones."""
 
 from collections.abc import Callable, Mapping
-from contextlib import suppress
 from dataclasses import dataclass
 
 from app.errors import InvalidInputError, NotFoundError
-from app.experiments.model import Experiment, Sample
+from app.experiments.model import Sample
 from app.experiments.preparation import NewInput
 from app.images.crop import Frames, Rectangle
 from app.methods.model import Method, Slot
@@ -89,76 +88,6 @@ def time_names(number: int) -> tuple[str, str]:
     return f"{prefix(number)}time.first", f"{prefix(number)}time.count"
 
 
-def opened_inputs(sample: Sample, choices: Choices, query: Mapping[str, str]) -> dict[str, str]:
-    """Fill the inputs' fields as a page's address says.
-
-    It says ``crop=x,y,w,h`` and ``time=first,count``, and of further inputs ``second=id:x,y,w,h@first,count``. What it
-    has wrong counts as not said.
-    """
-    crop = choices.start(sample)
-    with suppress(InvalidInputError):
-        crop = Rectangle.parse(query["crop"]).within(sample.width, sample.height) if "crop" in query else crop
-    values = dict(zip(crop_names(1), str(crop).split(","), strict=True))
-    values |= _opened_time(1, sample, query.get("time", ""))
-    for number in further():
-        said, _, time = query.get(ORDINALS[number - 1], "").partition("@")
-        name, _, corners = said.partition(":")
-        numbers, found = [""] * 4, None  # left empty: the crop to start with
-        try:
-            found = choices.find(name)
-            with suppress(InvalidInputError):
-                numbers = str(Rectangle.parse(corners).within(found.width, found.height)).split(",")
-        except NotFoundError:
-            name = "" if optional(number) else choices.other(sample, number)
-        values[f"{prefix(number)}sample"] = name
-        values |= dict(zip(crop_names(number), numbers, strict=True))
-        values |= _opened_time(number, found, time)
-    return values
-
-
-def _opened_time(number: int, sample: Sample | None, said: str) -> dict[str, str]:
-    first, _, count = said.partition(",")
-    try:
-        if sample is None:
-            raise ValueError
-        _range(sample, first, count)
-    except (ValueError, InvalidInputError):
-        first = count = ""
-    # One frame is what still methods take, and no range that a moving one could start from.
-    return dict(zip(time_names(number), (first, "" if count == "1" else count), strict=True))
-
-
-def input_query(experiment: Experiment) -> dict[str, str]:
-    """Write an experiment's inputs as the query that opens the form with them; the opposite of `opened_inputs`."""
-    said: dict[str, str] = {}
-    for index, source in enumerate(experiment.inputs):
-        time = "" if source.frames == Frames() else str(source.frames)
-        if index == 0:
-            said |= {"crop": str(source.crop)} | ({"time": time} if time else {})
-        else:
-            said[ORDINALS[index]] = f"{source.sample}:{source.crop}" + (f"@{time}" if time else "")
-    return said
-
-
-def typed_query(values: Mapping[str, str], method: Method) -> dict[str, str]:
-    """Write the inputs of a form that is not sent off yet in the same way."""
-    query = {}
-    for number in range(1, most(method) + 1):
-        crop, time = (_typed(values, names) for names in (crop_names(number), time_names(number)))
-        sample = values.get(f"{prefix(number)}sample", "")
-        if number == 1:
-            query["crop"] = crop
-            query |= {"time": time} if time else {}
-        elif sample:
-            query[ORDINALS[number - 1]] = sample + (f":{crop}" if crop else "") + (f"@{time}" if time else "")
-    return query
-
-
-def _typed(values: Mapping[str, str], names: tuple[str, ...]) -> str:
-    texts = [values.get(name, "").strip() for name in names]
-    return ",".join(texts) if any(texts) else ""
-
-
 def read_inputs(
     sample: Sample, method: Method, choices: Choices, values: Mapping[str, str], errors: dict[str, str]
 ) -> dict[int, NewInput]:
@@ -231,13 +160,16 @@ def _frames(
         errors[f"{prefix(number)}time"] = f"{TWO_NUMBERS if wanted.moving else ONE_NUMBER}; {', '.join(wrong)}."
         return None
     try:
-        return _range(sample, first, count if wanted.moving else "1")
+        return read_range(sample, first, count if wanted.moving else "1")
     except InvalidInputError as error:
         errors[f"{prefix(number)}time"] = error.message
     return None
 
 
-def _range(sample: Sample, first: str, count: str) -> Frames:
-    """Read a time range; left empty it begins with the first frame, and ends with the last."""
+def read_range(sample: Sample, first: str, count: str) -> Frames:
+    """Read a time range; left empty it begins with the first frame, and ends with the last.
+
+    Raises `ValueError` for what is no number, and `InvalidInputError` for what does not lie in the sample.
+    """
     begin = whole(plain(first, whole=True)) if first else 0
     return Frames(begin, whole(plain(count, whole=True)) if count else sample.frames - begin).within(sample.frames)

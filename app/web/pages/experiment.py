@@ -22,7 +22,7 @@ from app.methods.model import Method
 from app.methods.params import MovingParams
 from app.methods.registry import METHODS, method
 from app.web.deps import ServiceDep, TokenDep, base_url, owner_of_press, pressed, remember_owner
-from app.web.form.draft import form_url
+from app.web.form.address import form_url, input_values, sample_url
 from app.web.form.inputs import most
 from app.web.pages.snippets import snippets
 from app.web.pictures.panes import crop_panes, facts, gallery, input_titles, looping, steps, texture_pane, tiling
@@ -105,8 +105,7 @@ class Source:
     @property
     def address(self) -> str:
         """Its sample's page, opened at the crop and the time range."""
-        time = f"&time={self.frames}" if self.sample.moving else ""
-        return f"/samples/{self.sample.id}?crop={self.crop}{time}"
+        return sample_url(self.sample.id, input_values(1, self.crop, self.frames))
 
     @property
     def range(self) -> str:

@@ -15,7 +15,7 @@ from app.methods.fields import FormField, fields
 from app.methods.model import Method
 from app.methods.registry import METHODS, method
 from app.web.deps import ServiceDep, base_url
-from app.web.form.draft import form_url
+from app.web.form.address import form_url
 from app.web.pages.snippets import snippets
 from app.web.pictures.exhibits import Shown, figure_view, shown
 from app.web.templating import render

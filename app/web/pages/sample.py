@@ -2,7 +2,6 @@
 
 from contextlib import suppress
 from dataclasses import asdict, replace
-from urllib.parse import urlencode
 
 from fastapi import APIRouter, Request
 from fastapi.responses import RedirectResponse
@@ -26,8 +25,9 @@ from app.web.deps import (
     pressed,
     remember_owner,
 )
+from app.web.form.address import from_query, sample_url, with_switches
 from app.web.form.context import form_context
-from app.web.form.draft import Draft, opened, refused, sent, typed
+from app.web.form.draft import Draft, read_form, with_error
 from app.web.form.inputs import Choices, further, prefix
 from app.web.pages.errors import WORDS
 from app.web.pages.structure import form_structure
@@ -42,7 +42,7 @@ router = APIRouter(include_in_schema=False)
 def sample_page(request: Request, sample_id: str, service: ServiceDep, settings: SettingsDep) -> Response:
     sample = service.sample(sample_id)
     choices = _choices(service, settings)
-    return _sample(request, settings, sample, choices, opened(sample, choices, request.query_params))
+    return _sample(request, settings, sample, choices, from_query(sample, choices, request.query_params))
 
 
 def _choices(service: Service, settings: Settings) -> Choices:
@@ -98,13 +98,13 @@ async def check(request: Request, service: ServiceDep, settings: SettingsDep) ->
 
 def _check(service: Service, settings: Settings, values: dict[str, str]) -> Response:
     sample = service.sample(values.get("sample", ""))
-    read = sent(sample, _choices(service, settings), values, listed=True)
-    if read.request is None:
-        return JSONResponse({"errors": read.draft.errors})
+    submission = read_form(sample, _choices(service, settings), values)
+    if submission.request is None:
+        return JSONResponse({"errors": submission.draft.errors})
     try:
-        return JSONResponse({"errors": {}, "plan": asdict(service.check(read.request))})
+        return JSONResponse({"errors": {}, "plan": asdict(service.check(submission.request))})
     except AppError as error:
-        return JSONResponse({"errors": refused(read, method(read.request.method), error).errors})
+        return JSONResponse({"errors": with_error(submission, method(submission.request.method), error).errors})
 
 
 def _submit(
@@ -120,19 +120,18 @@ def _submit(
     if errors:
         return _sample(request, settings, sample, choices, Draft(values, errors, frozenset(errors)), 422)
     if values.get("show"):
-        query = urlencode(typed(values), safe=",:@")
-        return RedirectResponse(f"/samples/{sample.id}?{query}", HTTP_303_SEE_OTHER)
-    read = sent(sample, choices, values, listed=not values.get("unlisted"))
-    if read.request is None:
-        return _sample(request, settings, sample, choices, read.draft, 422)
+        return RedirectResponse(sample_url(sample.id, with_switches(values)), HTTP_303_SEE_OTHER)
+    submission = read_form(sample, choices, values)
+    if submission.request is None:
+        return _sample(request, settings, sample, choices, submission.draft, 422)
     press = pressed(values.get("press", ""))
     owner = owner_of_press(token, press)
     try:
-        experiment = service.submit(read.request, owner, press)
+        experiment = service.submit(submission.request, owner, press)
     except AppError as error:
-        draft = refused(read, method(read.request.method), error)
+        draft = with_error(submission, method(submission.request.method), error)
         with suppress(AppError):
-            service.check(read.request)
+            service.check(submission.request)
             draft = replace(draft, lasting=frozenset(draft.errors))
         return _sample(request, settings, sample, choices, draft, status_of(error))
     response = RedirectResponse(f"/experiments/{experiment.id}", HTTP_303_SEE_OTHER)

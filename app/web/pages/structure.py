@@ -18,6 +18,7 @@ from app.numbers import whole
 from app.samples import bundled
 from app.settings import Settings
 from app.web.deps import ServiceDep, SettingsDep
+from app.web.form.address import input_values, sample_url
 from app.web.form.inputs import crop_names, time_names
 from app.web.templating import METER_END, meter_place, render
 
@@ -43,7 +44,7 @@ class Measured:
 
     @property
     def url(self) -> str:
-        return f"/samples/{self.sample.id}?crop={self.crop}"
+        return sample_url(self.sample.id, input_values(1, self.crop))
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from app.experiments.service import Service
 from app.images.crop import Rectangle
 from app.methods.explanations.model import Exhibit, Figure
 from app.methods.registry import method
-from app.web.form.draft import form_url
+from app.web.form.address import form_url
 from app.web.pictures.panes import parts
 from app.web.pictures.videos import Clip, address, clip_of
 from app.web.templating import label

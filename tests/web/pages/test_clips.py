@@ -15,8 +15,9 @@ from app.experiments.model import Experiment, ExperimentInput, Sample
 from app.experiments.preparation import NewInput
 from app.images.crop import Frames, Rectangle
 from app.methods.registry import METHODS
+from app.web.form.address import form_url, from_query
 from app.web.form.context import form_context
-from app.web.form.draft import form_url, opened, sent
+from app.web.form.draft import read_form
 from app.web.form.inputs import Choices
 
 CROP = {"crop.x": "4", "crop.y": "6", "crop.width": "20", "crop.height": "16"}
@@ -160,14 +161,14 @@ def test_a_photograph_s_page_says_that_moving_methods_need_a_clip(site: Any) -> 
 def test_bundled_clips_are_offered_instead_of_a_photograph(choices: Choices) -> None:
     """And keep it as the pattern, where the method takes one."""
     page = choices.find("sand")
-    forms = form_context(page, choices, opened(page, choices, {}))["methods"]
+    forms = form_context(page, choices, from_query(page, choices, {}))["methods"]
     offered = {form.method.name: form.clips for form in forms if form.lacks_clip}
     assert set(offered) == {name for name, method in METHODS.items() if method.inputs[0].moving}
     for name, clips in offered.items():
-        still = "&second=sand" if len(METHODS[name].inputs) > 1 else ""
+        still = "&input-2.sample=sand" if len(METHODS[name].inputs) > 1 else ""
         assert clips == {"Clip": f"/samples/clip?method={name}{still}"}
     page = choices.find("clip")
-    forms = form_context(page, choices, opened(page, choices, {}))["methods"]
+    forms = form_context(page, choices, from_query(page, choices, {}))["methods"]
     assert not any(form.lacks_clip for form in forms)
 
 
@@ -196,7 +197,7 @@ def test_an_experiment_s_form_asks_for_it_again(method: str, choices: Choices) -
     )
     query = dict(parse_qsl(urlsplit(form_url(experiment)).query, keep_blank_values=True))
     page = choices.find("clip")
-    read = sent(page, choices, opened(page, choices, query).values, listed=True)
+    read = read_form(page, choices, from_query(page, choices, query).values)
     assert read.request is not None, read.draft.errors
     assert read.request.inputs == tuple(inputs)
     asked = {name: given for name, given in experiment.parameters.items() if given is not None}

@@ -115,7 +115,10 @@ def test_the_page_says_where_it_comes_from_and_how_it_continues(site: Any, films
     text = page_of(site, f"/experiments/{films['id']}")
     for words in ("frames 1–5 of 7", "32 × 28, 6 frames", "32 × 28, 5 frames, 10 a second", "Its last frame continues"):
         assert words in text
-    assert f'href="/samples/{clip}?crop=4,2,32,28&amp;time=1,5"' in text
+    assert (
+        f'href="/samples/{clip}?time.first=1&amp;time.count=5&amp;crop.x=4&amp;crop.y=2&amp;crop.width=32&amp;crop.height=28"'
+        in text
+    )
 
 
 def test_the_tiled_view_without_a_script_repeats_first_frames(site: Any, films: dict[str, Any]) -> None:

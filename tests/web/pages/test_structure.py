@@ -78,7 +78,7 @@ def test_the_page_places_the_photographs_and_explains_the_index_without_a_script
     delta = site.service.structure("gravel_gray", Rectangle(8, 8, 32, 32)).delta
     assert page.status_code == 200
     assert "<script" not in page.text
-    assert 'href="/samples/gravel_gray?crop=8,8,32,32"' in page.text
+    assert 'href="/samples/gravel_gray?crop.x=8&amp;crop.y=8&amp;crop.width=32&amp;crop.height=32"' in page.text
     assert f'<span class="meter-number">{max(delta, 0):.2f}</span> {reading(delta).verdict}' in page.text
     assert page.text.count("<math") > 10
     assert "style=" not in page.text  # the security policy would drop it
