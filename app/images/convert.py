@@ -11,7 +11,7 @@ import tifffile
 from PIL import Image
 
 from app.errors import InvalidInputError
-from app.images.formats.still import with_channels
+from app.images.formats.still import split_alpha
 from app.images.png_writer import Pixels, encode_png
 
 Format = Literal["png", "jpeg", "webp", "tiff"]
@@ -92,7 +92,7 @@ def make_rendition(png_path: Path, longest_side: int | None) -> tuple[bytes, str
 
 def flatten(picture: Pixels) -> Pixels:
     """Lay a picture of 8 bits, (H, W, C), on mid-grey where it has an alpha channel that is not opaque."""
-    colour, alpha = with_channels(picture)
+    colour, alpha = split_alpha(picture)
     if alpha is None:
         return colour
     return np.asarray(_on_grey(_image(picture)).convert("L" if colour.shape[2] == 1 else "RGB")).reshape(colour.shape)
@@ -185,7 +185,7 @@ def _lossy(image: Image.Image, file_format: Format, quality: int) -> bytes:
 
 
 def _tiff(array: Pixels) -> bytes:
-    colour, alpha = with_channels(array)
+    colour, alpha = split_alpha(array)
     written = io.BytesIO()
     grey = colour.shape[2] == 1
     tifffile.imwrite(

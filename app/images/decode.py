@@ -11,9 +11,9 @@ import numpy as np
 from app.errors import BrokenFileError, TooLargeError, UnsupportedFormatError
 from app.images.colour import to_srgb
 from app.images.formats import animation, jpeg, png, tiff, video, webp
-from app.images.formats.clip import Clip, ClipLimits, Frame
-from app.images.formats.containers import container_of
-from app.images.formats.still import Raw, is_opaque, upright, with_channels
+from app.images.formats.clip import Clip, ClipLimits, TimedFrame
+from app.images.formats.containers import identify_container
+from app.images.formats.still import Raw, is_opaque, split_alpha, turn_upright
 from app.images.media import Media
 from app.images.png_writer import SIGNATURE, Pixels
 
@@ -99,7 +99,7 @@ def decode(path: Path, limits: Limits) -> Decoded:
     for frame in found.frames:
         strip += frame.pixels.tobytes()
         times.append(frame.seconds)
-    pixels, alpha = with_channels(np.frombuffer(strip, np.uint8).reshape(-1, found.width, found.channels))
+    pixels, alpha = split_alpha(np.frombuffer(strip, np.uint8).reshape(-1, found.width, found.channels))
     return Decoded(**found.media(times).properties(), pixels=pixels, alpha=alpha)
 
 
@@ -127,19 +127,19 @@ def read(path: Path, limits: Limits) -> Decoded | Clip:
     if not data:
         raise BrokenFileError("The file is empty: choose it again and upload it once more.")
     with _telling():
-        if container := container_of(data):
+        if container := identify_container(data):
             clip = video.decode(data, container, limits.pixels, limits.clip)
         elif animation.is_animation(data):
             clip = animation.decode(data, limits.pixels, limits.clip)
         else:
             raw = _reader(data)(data, limits.pixels)
-            pixels = upright(to_srgb(raw.pixels, raw.profile), raw.orientation)
-            opaque = raw.alpha is None or is_opaque(raw.alpha)
-            return Decoded.still(pixels, None if raw.alpha is None or opaque else upright(raw.alpha, raw.orientation))
+            pixels = turn_upright(to_srgb(raw.pixels, raw.profile), raw.orientation)
+            alpha = None if raw.alpha is None or is_opaque(raw.alpha) else turn_upright(raw.alpha, raw.orientation)
+            return Decoded.still(pixels, alpha)
     return replace(clip, frames=_told(clip.frames))
 
 
-def _told(frames: Iterator[Frame]) -> Iterator[Frame]:
+def _told(frames: Iterator[TimedFrame]) -> Iterator[TimedFrame]:
     with _telling():
         yield from frames
 

@@ -137,15 +137,21 @@ class PngWriter:
             if y != below:
                 raise ValueError(f"row {min(y, below)} was written {'twice' if y < below else 'never'}")
             below = y + strip.rows
-            adler = adler32_combine(adler, strip.adler, strip.rows * length)
+            adler = combine_adler32(adler, strip.adler, strip.rows * length)
         if below != self.height and (self.height is not None or below == 0):
             raise ValueError(f"row {below} was written never")
         header = HEADER.pack(self.width, below, self.depth, COLOUR_TYPES[self.channels], 0, 0, 0)
         table = b"".join(STRIP_ENTRY.pack(strip.rows, strip.size, strip.adler) for _, strip in strips)
-        pieces = [SIGNATURE, *chunk(b"IHDR", header), *chunk(b"sRGB", b"\0"), *chunk(STRIP_TABLE, table), *FIRST_DATA]
+        pieces = [
+            SIGNATURE,
+            *make_chunk(b"IHDR", header),
+            *make_chunk(b"sRGB", b"\0"),
+            *make_chunk(STRIP_TABLE, table),
+            *FIRST_DATA,
+        ]
         for _, strip in strips:
             pieces += strip.pieces
-        return [*pieces, *last_data(adler), *chunk(b"IEND")]
+        return [*pieces, *make_last_data(adler), *make_chunk(b"IEND")]
 
 
 def encode_png(array: Pixels, threads: int = 1) -> bytes:
@@ -180,7 +186,7 @@ def encode_png(array: Pixels, threads: int = 1) -> bytes:
     return writer.finish()
 
 
-def adler32_combine(first: int, second: int, length: int) -> int:
+def combine_adler32(first: int, second: int, length: int) -> int:
     """Adler-32 of two byte strings joined, from the checksum of each and the second one's length.
 
     Examples
@@ -193,7 +199,7 @@ def adler32_combine(first: int, second: int, length: int) -> int:
     return high % ADLER_BASE << 16 | low % ADLER_BASE
 
 
-def chunk(name: bytes, *parts: bytes) -> list[bytes]:
+def make_chunk(name: bytes, *parts: bytes) -> list[bytes]:
     """Frame a PNG chunk's content, given in parts; joined, the pieces are the chunk."""
     checksum = isal_zlib.crc32(name)
     for part in parts:
@@ -201,12 +207,12 @@ def chunk(name: bytes, *parts: bytes) -> list[bytes]:
     return [sum(map(len, parts)).to_bytes(4, "big"), name, *parts, checksum.to_bytes(4, "big")]
 
 
-FIRST_DATA = chunk(b"IDAT", b"\x78\x01")  # the zlib header
+FIRST_DATA = make_chunk(b"IDAT", b"\x78\x01")  # the zlib header
 
 
-def last_data(adler: int) -> list[bytes]:
+def make_last_data(adler: int) -> list[bytes]:
     """Make the chunk after the last strip: an empty last deflate block and the checksum of all rows."""
-    return chunk(b"IDAT", b"\x03\x00", adler.to_bytes(4, "big"))
+    return make_chunk(b"IDAT", b"\x03\x00", adler.to_bytes(4, "big"))
 
 
 def _strip(block: Pixels, pixel: int) -> _Strip:
@@ -222,7 +228,7 @@ def _strip(block: Pixels, pixel: int) -> _Strip:
         parts.append(compressor.compress(filtered))
         adler = isal_zlib.adler32(filtered, adler)
     parts.append(compressor.flush(isal_zlib.Z_SYNC_FLUSH))
-    return _Strip(len(raw), chunk(b"IDAT", *parts), sum(map(len, parts)), adler)
+    return _Strip(len(raw), make_chunk(b"IDAT", *parts), sum(map(len, parts)), adler)
 
 
 def _filtered(raw: NDArray[np.uint8], start: int, stop: int, pixel: int) -> NDArray[np.uint8]:

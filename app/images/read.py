@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from app.errors import InvalidInputError
 from app.images.crop import Rectangle
-from app.images.formats.still import is_opaque, with_channels
+from app.images.formats.still import is_opaque, split_alpha
 from app.images.png_writer import (
     COLOUR_TYPES,
     FIRST_DATA,
@@ -18,9 +18,9 @@ from app.images.png_writer import (
     STRIP_ENTRY,
     STRIP_TABLE,
     Pixels,
-    adler32_combine,
-    chunk,
-    last_data,
+    combine_adler32,
+    make_chunk,
+    make_last_data,
 )
 
 FRAME = 12  # bytes of a chunk around its content: length, name, checksum
@@ -89,7 +89,7 @@ def read_rectangle(path: Path, rectangle: Rectangle) -> tuple[Pixels, Pixels | N
             png, first = path.read_bytes(), 0
     array = imagecodecs.png_decode(png)
     top = area.y - first
-    return with_channels(array[top : top + area.height, area.x : area.x + area.width])
+    return split_alpha(array[top : top + area.height, area.x : area.x + area.width])
 
 
 def _strips(
@@ -106,11 +106,18 @@ def _strips(
             first = below + rows
         elif below < area.y + area.height:
             taken += FRAME + size
-            adler = adler32_combine(adler, checksum, rows * row_bytes)
+            adler = combine_adler32(adler, checksum, rows * row_bytes)
         else:
             break
         below += rows
     file.seek(skipped, 1)
     header = HEADER.pack(width, below - first, depth, colour, 0, 0, 0)
-    pieces = [SIGNATURE, *chunk(b"IHDR", header), *FIRST_DATA, file.read(taken), *last_data(adler), *chunk(b"IEND")]
+    pieces = [
+        SIGNATURE,
+        *make_chunk(b"IHDR", header),
+        *FIRST_DATA,
+        file.read(taken),
+        *make_last_data(adler),
+        *make_chunk(b"IEND"),
+    ]
     return b"".join(pieces), first

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 from PIL import Image
 
-from app.images.png_writer import PngWriter, adler32_combine, encode_png
+from app.images.png_writer import PngWriter, combine_adler32, encode_png
 from tests.profiles import examples
 
 Picture = NDArray[np.uint8] | NDArray[np.uint16]
@@ -157,9 +157,9 @@ def test_arrays_and_sizes_that_no_png_has_are_refused() -> None:
 
 @given(st.binary(max_size=300), st.binary(max_size=300))
 def test_combined_checksums_are_those_of_the_joined_bytes(first: bytes, second: bytes) -> None:
-    assert adler32_combine(zlib.adler32(first), zlib.adler32(second), len(second)) == zlib.adler32(first + second)
+    assert combine_adler32(zlib.adler32(first), zlib.adler32(second), len(second)) == zlib.adler32(first + second)
 
 
 def test_combined_checksums_hold_for_long_strings() -> None:
     first, second = b"\xff" * 3_000_000, b"\xfe" * 5_000_001
-    assert adler32_combine(zlib.adler32(first), zlib.adler32(second), len(second)) == zlib.adler32(first + second)
+    assert combine_adler32(zlib.adler32(first), zlib.adler32(second), len(second)) == zlib.adler32(first + second)

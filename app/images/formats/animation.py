@@ -16,8 +16,8 @@ from PIL import Image
 from app.errors import BrokenFileError, UnsupportedFormatError
 from app.images.colour import to_srgb
 from app.images.formats import png, webp
-from app.images.formats.clip import Clip, ClipLimits, Frame, check_clip
-from app.images.formats.still import DAMAGED, check_size, is_opaque, orientation, upright
+from app.images.formats.clip import Clip, ClipLimits, TimedFrame, check_clip
+from app.images.formats.still import DAMAGED, check_size, is_opaque, read_orientation, turn_upright
 from app.images.png_writer import HEADER, SIGNATURE
 
 MEDIA_TYPES = {"GIF": "image/gif", "PNG": "image/apng", "WEBP": "image/webp"}
@@ -35,7 +35,7 @@ def is_animation(data: bytes) -> bool:
     if data.startswith(b"RIFF"):
         return data[12:16] == b"VP8X" and bool(data[20] & ANIMATED_WEBP)
     if data.startswith(SIGNATURE):
-        for name, content in png.chunks(data):
+        for name, content in png.read_chunks(data):
             if name == b"IDAT":
                 break
             if name == b"acTL":
@@ -70,19 +70,19 @@ def decode(data: bytes, max_pixels: int, limits: ClipLimits) -> Clip:
         repeats = [1] * len(times)
     channels = (1 if grey else 3) + (not opaque)
     with Image.open(io.BytesIO(data), formats=[file_format]) as image:
-        profile, turned = image.info.get("icc_profile"), orientation(image.getexif)
+        profile, turned = image.info.get("icc_profile"), read_orientation(image.getexif)
     if turned > 4:
         width, height = height, width
 
-    def frames() -> Iterator[Frame]:
+    def frames() -> Iterator[TimedFrame]:
         interval, shown = sum(times) / sum(repeats) / 1000, 0
         for image, repeat in zip(_images(data, file_format), repeats, strict=True):
             pixels = _pixels(image, image.size)[..., CHANNELS[channels]]
             colours = channels - (not opaque)
             pixels[..., :colours] = to_srgb(pixels[..., :colours], profile)
-            frame = upright(pixels, turned)
+            frame = turn_upright(pixels, turned)
             for _ in range(repeat):
-                yield Frame(frame, shown * interval)
+                yield TimedFrame(frame, shown * interval)
                 shown += 1
 
     return Clip(width, height, channels, MEDIA_TYPES[file_format], frames())
@@ -95,8 +95,8 @@ def _header(data: bytes) -> tuple[str, int, int]:
     if data.startswith(b"RIFF"):
         if int.from_bytes(data[4:8], "little") + 8 > len(data):
             raise BrokenFileError(DAMAGED.format("WebP"))
-        return "WEBP", *webp.size(data)
-    chunks = png.chunks(data)
+        return "WEBP", *webp.read_size(data)
+    chunks = png.read_chunks(data)
     header = next(chunks)[1]
     if not any(name == b"IEND" for name, _ in chunks):
         raise BrokenFileError(DAMAGED.format("PNG"))

@@ -22,7 +22,7 @@ class ClipLimits:
     pixels: int
 
 
-class Frame(NamedTuple):
+class TimedFrame(NamedTuple):
     """``pixels`` (H, W, C) uint8, upright and in sRGB, C as `Clip.channels`; ``seconds`` is when it is shown."""
 
     pixels: Pixels
@@ -33,16 +33,16 @@ class Frame(NamedTuple):
 class Clip:
     """A video whose ``frames`` are decoded while they are taken, once.
 
-    ``channels`` is 1 grey, 2 grey and alpha, 3 RGB, 4 RGB and alpha; ``media_type`` is what the file is, ``said_rate``
-    how many frames a second it says that it has.
+    ``channels`` is 1 grey, 2 grey and alpha, 3 RGB, 4 RGB and alpha; ``media_type`` is what the file is,
+    ``nominal_rate`` the frames a second that its header names, 0 if none.
     """
 
     width: int
     height: int
     channels: int
     media_type: str
-    frames: Iterator[Frame]
-    said_rate: float = 0.0
+    frames: Iterator[TimedFrame]
+    nominal_rate: float = 0.0
 
     def media(self, times: Sequence[float]) -> Media:
         """Its properties, once all frames were taken; ``times`` are when each is shown."""
@@ -53,7 +53,7 @@ class Clip:
             depth=8,
             transparent=self.channels % 2 == 0,
             frames=len(times),
-            rate=rate_of(times, self.said_rate),
+            rate=estimate_rate(times, self.nominal_rate),
             media_type=self.media_type if len(times) > 1 else STILL,
         )
 
@@ -100,7 +100,7 @@ def check_clip(width: int, height: int, frames: int, seconds: float, limits: Cli
     )
 
 
-def within(frames: Iterator[Frame], limits: ClipLimits) -> Iterator[Frame]:
+def limit_clip(frames: Iterator[TimedFrame], limits: ClipLimits) -> Iterator[TimedFrame]:
     """Pass on frames, and refuse the first that is too much: what a file says of its length may be a lie.
 
     Raises
@@ -116,7 +116,7 @@ def within(frames: Iterator[Frame], limits: ClipLimits) -> Iterator[Frame]:
         yield frame
 
 
-def rate_of(seconds: Sequence[float], said: float = 0.0) -> float:
+def estimate_rate(seconds: Sequence[float], said: float = 0.0) -> float:
     """Frames a second, from when each is shown: the average, within 1 and 120; 0 of a single frame.
 
     What the header has ``said``, or else a usual rate, is taken for an average that differs from it by the rounding of
@@ -124,7 +124,7 @@ def rate_of(seconds: Sequence[float], said: float = 0.0) -> float:
 
     Examples
     --------
-    >>> rate_of([0.0]), rate_of([0.0, 0.033, 0.067, 0.1]), rate_of([0.0, 0.4, 0.5])
+    >>> estimate_rate([0.0]), estimate_rate([0.0, 0.033, 0.067, 0.1]), estimate_rate([0.0, 0.4, 0.5])
     (0.0, 30.0, 4.0)
     """
     if len(seconds) < 2:

@@ -17,14 +17,14 @@ class Container:
     whole: bool
 
 
-def container_of(data: bytes) -> Container | None:
+def identify_container(data: bytes) -> Container | None:
     """Tell a video's container; None if it is not one.
 
     Examples
     --------
-    >>> container_of(bytes.fromhex("00000010 66747970 6d703432 00000000"))
+    >>> identify_container(bytes.fromhex("00000010 66747970 6d703432 00000000"))
     Container(demuxer='mov', media_type='video/mp4', whole=True)
-    >>> container_of(b"GIF89a")
+    >>> identify_container(b"GIF89a")
     """
     if data.startswith(EBML.to_bytes(4, "big")):
         document = next((data[at:end] for name, at, end in _elements(data) if name == EBML), b"")

@@ -6,7 +6,7 @@ import numpy as np
 from PIL import Image
 
 from app.errors import BrokenFileError, UnsupportedFormatError
-from app.images.formats.still import DAMAGED, Raw, check_size, orientation
+from app.images.formats.still import DAMAGED, Raw, check_size, read_orientation
 from app.images.png_writer import Pixels
 
 NAME = "JPEG"
@@ -38,7 +38,7 @@ def decode(data: bytes, max_pixels: int) -> Raw:
     with Image.open(io.BytesIO(data), formats=["JPEG"]) as image:
         if image.size != (width, height):
             raise BrokenFileError(DAMAGED.format(NAME))
-        profile, upright = image.info.get("icc_profile"), orientation(image.getexif)
+        profile, upright = image.info.get("icc_profile"), read_orientation(image.getexif)
         pixels = np.asarray(image)
     if pixels.ndim == 2:
         pixels = pixels[..., None]

@@ -11,8 +11,8 @@ from isal import isal_zlib
 from PIL import Image
 
 from app.errors import BrokenFileError
-from app.images.formats.still import DAMAGED, Raw, check_size, orientation, with_channels
-from app.images.png_writer import HEADER, SIGNATURE, chunk
+from app.images.formats.still import DAMAGED, Raw, check_size, read_orientation, split_alpha
+from app.images.png_writer import HEADER, SIGNATURE, make_chunk
 
 NAME = "PNG"
 SAMPLES_PER_PIXEL = {0: 1, 2: 3, 3: 1, 4: 2, 6: 4}
@@ -33,7 +33,7 @@ def decode(data: bytes, max_pixels: int) -> Raw:
     TooLargeError
         If it has more than ``max_pixels``.
     """
-    remaining = chunks(data)
+    remaining = read_chunks(data)
     name, header = next(remaining, (b"", b""))
     if name != b"IHDR" or len(header) != 13:
         raise BrokenFileError(DAMAGED.format(NAME))
@@ -42,18 +42,18 @@ def decode(data: bytes, max_pixels: int) -> Raw:
         raise BrokenFileError(DAMAGED.format(NAME))
     check_size(width, height, max_pixels, NAME)
     # Only what the pixels need is handed on; the rest is metadata, and not worth a parser's risk.
-    kept = [SIGNATURE, *chunk(b"IHDR", header)]
+    kept = [SIGNATURE, *make_chunk(b"IHDR", header)]
     compressed: list[bytes] = []
     profile, upright, ended = None, 1, False
     for name, content in remaining:
         if name in (b"PLTE", b"tRNS", b"IDAT"):
-            kept += chunk(name, content)
+            kept += make_chunk(name, content)
         if name == b"IDAT":
             compressed.append(content)
         elif name == b"iCCP":
             profile = _profile(content)
         elif name == b"eXIf":
-            upright = orientation(partial(_exif, content))
+            upright = read_orientation(partial(_exif, content))
         elif name == b"IEND":
             ended = True
             break
@@ -61,14 +61,14 @@ def decode(data: bytes, max_pixels: int) -> Raw:
     if not ended or not _inflates_to(compressed, size):
         raise BrokenFileError(DAMAGED.format(NAME))
     try:
-        array = imagecodecs.png_decode(b"".join([*kept, *chunk(b"IEND")]))
+        array = imagecodecs.png_decode(b"".join([*kept, *make_chunk(b"IEND")]))
     except imagecodecs.PngError:
         raise BrokenFileError(DAMAGED.format(NAME)) from None
-    pixels, alpha = with_channels(array)
+    pixels, alpha = split_alpha(array)
     return Raw(pixels, alpha, profile, upright)
 
 
-def chunks(data: bytes) -> Iterator[tuple[bytes, bytes]]:
+def read_chunks(data: bytes) -> Iterator[tuple[bytes, bytes]]:
     """Name and content of every chunk whose checksum holds."""
     at = len(SIGNATURE)
     while at + 12 <= len(data):

@@ -48,7 +48,7 @@ def check_size(width: int, height: int, max_pixels: int, name: str) -> None:
         )
 
 
-def with_channels(array: Pixels) -> tuple[Pixels, Pixels | None]:
+def split_alpha(array: Pixels) -> tuple[Pixels, Pixels | None]:
     """Split (H, W) or (H, W, 1–4) into colour (H, W, 1 or 3) and alpha."""
     if array.ndim == 2:
         return array[..., None], None
@@ -62,7 +62,7 @@ def is_opaque(alpha: Pixels) -> bool:
     return bool(alpha.min() >= OPAQUE * np.iinfo(alpha.dtype).max)
 
 
-def orientation(read: Callable[[], Image.Exif]) -> int:
+def read_orientation(read: Callable[[], Image.Exif]) -> int:
     """EXIF orientation of what ``read`` gives, 1 (upright) if that is broken: no reason to refuse a picture."""
     try:
         return int(read().get(EXIF_ORIENTATION, 1))
@@ -70,7 +70,7 @@ def orientation(read: Callable[[], Image.Exif]) -> int:
         return 1
 
 
-def upright(array: Pixels, orientation: int) -> Pixels:
+def turn_upright(array: Pixels, orientation: int) -> Pixels:
     """Apply EXIF's orientation, a number from 1 to 8; any other leaves the picture as it is."""
     if orientation in (5, 6, 7, 8):
         array = array.swapaxes(0, 1)

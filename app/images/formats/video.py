@@ -24,9 +24,9 @@ from av.video.reformatter import ColorRange, Colorspace, ColorTrc, Interpolation
 from av.video.stream import VideoStream
 
 from app.errors import BrokenFileError, UnsupportedFormatError
-from app.images.formats.clip import USUAL_RATE, Clip, ClipLimits, Frame, check_clip, within
+from app.images.formats.clip import USUAL_RATE, Clip, ClipLimits, TimedFrame, check_clip, limit_clip
 from app.images.formats.containers import Container
-from app.images.formats.still import check_size, is_opaque, upright
+from app.images.formats.still import check_size, is_opaque, turn_upright
 
 NAME = "video"
 DAMAGED = (
@@ -132,10 +132,10 @@ class _VideoTrack:
             stream = _stream(opened)
             return all(map(_is_neutral, _decoded(opened, stream, self._decoder(stream))))
 
-    def frames(self, channels: int) -> Iterator[Frame]:
-        return within(self._frames(channels), self._limits)
+    def frames(self, channels: int) -> Iterator[TimedFrame]:
+        return limit_clip(self._frames(channels), self._limits)
 
-    def _frames(self, channels: int) -> Iterator[Frame]:
+    def _frames(self, channels: int) -> Iterator[TimedFrame]:
         reformatter, (width, height) = VideoReformatter(), self._scaled
         with _telling(), self._open() as opened:
             stream = _stream(opened)
@@ -158,7 +158,7 @@ class _VideoTrack:
                 )
                 pixels = picture.to_ndarray().reshape(height, width, channels).view(np.uint8)
                 seconds = index / self.rate if frame.pts is None else float(frame.pts * (stream.time_base or 1))
-                yield Frame(upright(pixels, self._orientation), seconds)
+                yield TimedFrame(turn_upright(pixels, self._orientation), seconds)
 
     def _open(self) -> InputContainer:
         # The demuxer is named and no protocol allowed: nothing but these bytes is opened, whatever they refer to.

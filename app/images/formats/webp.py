@@ -6,7 +6,7 @@ import numpy as np
 from PIL import Image
 
 from app.errors import BrokenFileError
-from app.images.formats.still import DAMAGED, Raw, check_size, orientation, with_channels
+from app.images.formats.still import DAMAGED, Raw, check_size, read_orientation, split_alpha
 
 NAME = "WebP"
 
@@ -21,19 +21,19 @@ def decode(data: bytes, max_pixels: int) -> Raw:
     TooLargeError
         If it has more than ``max_pixels``.
     """
-    width, height = size(data)
+    width, height = read_size(data)
     check_size(width, height, max_pixels, NAME)
     if int.from_bytes(data[4:8], "little") + 8 > len(data):
         raise BrokenFileError(DAMAGED.format(NAME))
     with Image.open(io.BytesIO(data), formats=["WEBP"]) as image:
         if image.size != (width, height):
             raise BrokenFileError(DAMAGED.format(NAME))
-        profile, upright = image.info.get("icc_profile"), orientation(image.getexif)
-        pixels, alpha = with_channels(np.asarray(image.convert("RGBA" if image.has_transparency_data else "RGB")))
+        profile, upright = image.info.get("icc_profile"), read_orientation(image.getexif)
+        pixels, alpha = split_alpha(np.asarray(image.convert("RGBA" if image.has_transparency_data else "RGB")))
     return Raw(pixels, alpha, profile, upright)
 
 
-def size(data: bytes) -> tuple[int, int]:
+def read_size(data: bytes) -> tuple[int, int]:
     """Width and height from the header: opening the file in a decoder allocates the whole canvas already."""
     kind, body = data[12:16], data[20:30]
     if len(body) == 10:
