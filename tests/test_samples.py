@@ -39,10 +39,10 @@ def test_every_photograph_of_the_directory_has_exactly_one_entry(photographs: li
 def test_every_suggested_crop_lies_inside_its_photograph(photographs: list[BundledSample]) -> None:
     for photograph in photographs:
         if photograph.kind == "moving":
-            photograph.crop.within(*film(photograph.path).shape[2:0:-1])
+            photograph.crop.check_within(*film(photograph.path).shape[2:0:-1])
             continue
         with Image.open(photograph.path) as image:
-            photograph.crop.within(*image.size)
+            photograph.crop.check_within(*image.size)
 
 
 def test_suggested_crops_are_large_enough_to_hold_a_texture(photographs: list[BundledSample]) -> None:

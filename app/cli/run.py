@@ -154,7 +154,7 @@ def _ready(request: Request, answer: Answer, settings: Settings) -> _Ready:
 def _read(path: Path, settings: Settings) -> Decoded:
     if not path.is_file():
         raise NotFoundError(f"There is no file {path}.")
-    return decode(path, Limits.by(settings))
+    return decode(path, Limits.from_settings(settings))
 
 
 def _experiment(request: Request, answer: Answer, photos: Mapping[str, Decoded], settings: Settings) -> Experiment:
@@ -197,7 +197,7 @@ def output_size(text: str, crop: Rectangle) -> tuple[int, int]:
     if found := re.fullmatch(r"(\d{1,6})[x×](\d{1,6})", text, re.ASCII):
         return int(found[1]), int(found[2])
     if (found := re.fullmatch(r"[x×](\d{1,3}(?:\.\d{1,3})?)", text, re.ASCII)) and float(found[1]) > 0:
-        return crop.scaled(float(found[1]))
+        return crop.scale_size(float(found[1]))
     raise InvalidInputError(
         f"--size is WIDTHxHEIGHT, for example 1024x1024, or a multiple of the crop, x2; got {said(text)}."
     )

@@ -91,7 +91,9 @@ class Meter:
         """
         check_frame(sample, frame)
         whole = Rectangle(0, 0, sample.width, sample.height)
-        area = locate_crop(crop_to_centre((crop or whole).within(sample.width, sample.height)), frame, sample.height)
+        area = locate_crop(
+            crop_to_centre((crop or whole).check_within(sample.width, sample.height)), frame, sample.height
+        )
         small = sample.width * sample.height <= SMALL and not sample.transparent and not sample.moving
         found = self._measured(sample.digest, area, sigma, whole if small else None)
         return Index(None, None) if is_too_small(area.height, area.width) else Index(found.delta, found.z)

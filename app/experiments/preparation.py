@@ -213,7 +213,7 @@ def _frames(wanted: NewInput, sample: Sample, slot: Slot, field: str) -> Frames:
         )
     frames = wanted.frames or (Frames(0, sample.frames) if slot.moving else Frames())
     try:
-        frames.within(sample.frames)
+        frames.check_within(sample.frames)
     except InvalidInputError as error:
         raise InvalidInputError(error.message, f"{field}.frames") from None
     if slot.moving and frames.count < LEAST_FRAMES:
@@ -238,7 +238,7 @@ def _crop(
 ) -> Rectangle:
     crop = wanted.crop or Rectangle(0, 0, sample.width, sample.height)
     try:
-        crop.within(sample.width, sample.height)
+        crop.check_within(sample.width, sample.height)
     except InvalidInputError as error:
         raise InvalidInputError(error.message, field) from None
     if sample.transparent and transparent(sample, crop, frames):

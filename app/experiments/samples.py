@@ -26,7 +26,7 @@ class SampleIntake:
         self._store = store
         self._blobs = blobs
         self._directory = settings.samples_dir
-        self._limits = Limits.by(settings)
+        self._limits = Limits.from_settings(settings)
 
     def add(self, upload: Path, owner: str | None) -> Sample:
         """A new sample of this file; ``owner`` is the digest of a token.

@@ -38,7 +38,7 @@ class Rectangle:
             ) from None
         return cls(x, y, width, height)
 
-    def within(self, width: int, height: int) -> "Rectangle":
+    def check_within(self, width: int, height: int) -> "Rectangle":
         """Itself, if it lies in a picture of this size.
 
         Raises
@@ -58,12 +58,12 @@ class Rectangle:
             )
         return self
 
-    def scaled(self, factor: float) -> tuple[int, int]:
+    def scale_size(self, factor: float) -> tuple[int, int]:
         """Width and height of a texture ``factor`` times as large; half a pixel is rounded up.
 
         Examples
         --------
-        >>> Rectangle(0, 0, 103, 99).scaled(1.5)
+        >>> Rectangle(0, 0, 103, 99).scale_size(1.5)
         (155, 149)
         """
         return max(1, int(self.width * factor + 0.5)), max(1, int(self.height * factor + 0.5))
@@ -101,7 +101,7 @@ class Frames:
             ) from None
         return cls(first, count)
 
-    def within(self, frames: int) -> "Frames":
+    def check_within(self, frames: int) -> "Frames":
         """Itself, if it lies in a sample of so many frames.
 
         Raises

@@ -50,7 +50,7 @@ class Limits:
     video_pixels: int = 1 << 28
 
     @classmethod
-    def by(cls, settings: "Settings") -> "Limits":
+    def from_settings(cls, settings: "Settings") -> "Limits":
         """What the settings allow."""
         return cls(
             bytes=settings.max_upload_bytes,

@@ -191,7 +191,7 @@ def combine_adler32(first: int, second: int, length: int) -> int:
 
     Examples
     --------
-    >>> adler32_combine(isal_zlib.adler32(b"tex"), isal_zlib.adler32(b"ture"), 4) == isal_zlib.adler32(b"texture")
+    >>> combine_adler32(isal_zlib.adler32(b"tex"), isal_zlib.adler32(b"ture"), 4) == isal_zlib.adler32(b"texture")
     True
     """
     low = (first & 0xFFFF) + (second & 0xFFFF) - 1

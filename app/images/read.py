@@ -79,7 +79,7 @@ def read_rectangle(path: Path, rectangle: Rectangle) -> tuple[Pixels, Pixels | N
     with path.open("rb") as file:
         start = file.read(BEFORE_TABLE)
         width, height, depth, colour, *_ = HEADER.unpack_from(start, len(SIGNATURE) + 8)
-        area = rectangle.within(width, height)
+        area = rectangle.check_within(width, height)
         length, name = int.from_bytes(file.read(4), "big"), file.read(4)
         if name == STRIP_TABLE:
             table = list(STRIP_ENTRY.iter_unpack(file.read(length)))

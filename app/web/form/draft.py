@@ -85,4 +85,4 @@ def _resize(values: dict[str, str], first: NewInput | None, errors: dict[str, st
     elif factor == "1":
         values["width"] = values["height"] = ""
     elif first and first.crop:
-        values["width"], values["height"] = map(str, first.crop.scaled(float(factor)))
+        values["width"], values["height"] = map(str, first.crop.scale_size(float(factor)))

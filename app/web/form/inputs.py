@@ -134,7 +134,7 @@ def _crop(sample: Sample, numbers: list[str], field: str, errors: dict[str, str]
         errors[field] = f"{FOUR_NUMBERS}; {', '.join(wrong)}." + (OR_NONE if field != "crop" else "")
         return None
     try:
-        return Rectangle(*(_number(text) or 0 for text in numbers)).within(sample.width, sample.height)
+        return Rectangle(*(_number(text) or 0 for text in numbers)).check_within(sample.width, sample.height)
     except InvalidInputError as error:
         errors[field] = error.message
     return None
@@ -172,4 +172,6 @@ def read_range(sample: Sample, first: str, count: str) -> Frames:
     Raises `ValueError` for what is no number, and `InvalidInputError` for what does not lie in the sample.
     """
     begin = whole(plain(first, whole=True)) if first else 0
-    return Frames(begin, whole(plain(count, whole=True)) if count else sample.frames - begin).within(sample.frames)
+    return Frames(begin, whole(plain(count, whole=True)) if count else sample.frames - begin).check_within(
+        sample.frames
+    )

@@ -31,7 +31,7 @@ def expand(sample: Sample, choices: Choices, chosen: Method, query: Mapping[str,
 
 def _crop(number: int, sample: Sample, text: str) -> dict[str, str]:
     with suppress(InvalidInputError):
-        crop = Rectangle.parse(text).within(sample.width, sample.height)
+        crop = Rectangle.parse(text).check_within(sample.width, sample.height)
         return dict(zip(crop_names(number), str(crop).split(","), strict=True))
     return {}
 
