@@ -11,7 +11,7 @@ from app.experiments.ports import BlobStore, ExperimentStore
 from app.experiments.tokens import new_identifier
 from app.images.crop import Frames, Rectangle
 from app.images.decode import Limits
-from app.images.intake.client import intake, server
+from app.images.intake.client import server, take_in
 from app.images.stored_video import frames_have_transparency
 from app.samples import bundled
 from app.settings import Settings
@@ -66,7 +66,7 @@ class SampleIntake:
         return frames_have_transparency(self._blobs.path(sample.digest), crop, frames, sample.height)
 
     def _add(self, path: Path, sample_id: str, owner: str | None, *, title: str | None) -> Sample:
-        found = intake(path, self._blobs.temporary_directory, self._limits)
+        found = take_in(path, self._blobs.temporary_directory, self._limits)
         with self._blobs.lease():
             sample = Sample(
                 **found.properties(),

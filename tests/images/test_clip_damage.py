@@ -17,7 +17,7 @@ from app.errors import AppError, BrokenFileError, TooLargeError
 from app.images.crop import Frames, Rectangle
 from app.images.decode import Decoded, Limits, decode
 from app.images.intake import client as module
-from app.images.intake.client import intake
+from app.images.intake.client import take_in
 from app.images.stored_video import read_frames
 from app.settings import ROOT
 from tests.images.clips import FULL, animation, lossless, moving, video
@@ -61,7 +61,7 @@ def test_what_is_stored_is_the_strip_of_what_is_decoded(
     tmp_path: Path, directory: Path, files: dict[str, bytes], name: str
 ) -> None:
     (tmp_path / "upload").write_bytes(files[name])
-    stored, decoded = intake(tmp_path / "upload", directory, Limits()), decode(tmp_path / "upload", Limits())
+    stored, decoded = take_in(tmp_path / "upload", directory, Limits()), decode(tmp_path / "upload", Limits())
     assert (stored.width, stored.height, stored.frames, stored.depth) == (64, 48, 8, 8)
     assert (stored.rate, stored.media_type, stored.channels) == (decoded.rate, decoded.media_type, 3)
     strip = read_frames(stored.path, Rectangle(0, 0, 64, 48), Frames(0, 8), 48)
@@ -106,7 +106,7 @@ def test_damaged_videos_are_read_or_refused_and_harm_nothing(
         content[at : at + len(change)] = change
     (tmp_path / "upload").write_bytes(content)
     try:
-        stored = intake(
+        stored = take_in(
             tmp_path / "upload", directory, Limits(pixels=1_000_000, video_pixels=1 << 22, seconds=10, memory=512 << 20)
         )
     except AppError:
@@ -177,9 +177,9 @@ def test_a_video_that_takes_too_long_is_killed(
     large: Path, tmp_path: Path, directory: Path, files: dict[str, bytes]
 ) -> None:
     (tmp_path / "upload").write_bytes(files["mp4"])
-    intake(tmp_path / "upload", directory, Limits()).path.unlink()  # the server runs: its start is not what is late
+    take_in(tmp_path / "upload", directory, Limits()).path.unlink()  # the server runs: its start is not what is late
     with pytest.raises(TooLargeError, match=r"more than the 0\.01 seconds"):
-        intake(large, directory, Limits(seconds=0.01))
+        take_in(large, directory, Limits(seconds=0.01))
     assert not list(directory.iterdir())
     assert module.server._process is not None
     assert not psutil.Process(module.server._process.pid).children()
@@ -188,7 +188,7 @@ def test_a_video_that_takes_too_long_is_killed(
 def test_a_video_that_takes_too_much_memory_is_refused(large: Path, directory: Path) -> None:
     # FFmpeg itself sometimes takes a lack of memory in one of its threads for damage.
     with pytest.raises((TooLargeError, BrokenFileError), match=r"more than the 32 MB of memory|This video is damaged"):
-        intake(large, directory, Limits(memory=32 << 20))
+        take_in(large, directory, Limits(memory=32 << 20))
     assert not list(directory.iterdir())
 
 
@@ -196,6 +196,6 @@ def test_the_server_still_forks_from_a_single_thread_after_videos(
     tmp_path: Path, directory: Path, files: dict[str, bytes]
 ) -> None:
     (tmp_path / "upload").write_bytes(files["mp4"])
-    intake(tmp_path / "upload", directory, Limits())
+    take_in(tmp_path / "upload", directory, Limits())
     assert module.server._process is not None
     assert psutil.Process(module.server._process.pid).num_threads() == 1

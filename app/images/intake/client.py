@@ -97,7 +97,7 @@ atexit.register(server.stop)
 _turn = BoundedSemaphore(AT_ONCE)
 
 
-def intake(path: Path, directory: Path, limits: Limits) -> Intake:
+def take_in(path: Path, directory: Path, limits: Limits) -> Intake:
     """Decode an upload in a process of its own and store it as PNG. Thread-safe; blocks.
 
     Parameters

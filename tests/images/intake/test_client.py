@@ -22,7 +22,7 @@ from PIL import Image
 from app.errors import AppError, BrokenFileError, BusyError, TooLargeError, UnsupportedFormatError
 from app.images.decode import Limits, decode
 from app.images.intake import client as module
-from app.images.intake.client import intake
+from app.images.intake.client import take_in
 from tests.profiles import examples
 
 Noise = Callable[..., NDArray[Any]]
@@ -67,7 +67,7 @@ def server_process() -> psutil.Process:
 
 @pytest.mark.parametrize("name", ["scene_china.jpg", "gravel_gray.png", "tiles02.png", "bark_fir.png"])
 def test_a_photograph_is_stored_as_a_png_of_the_pixels_that_were_decoded(directory: Path, name: str) -> None:
-    stored = intake(SAMPLES / name, directory, Limits())
+    stored = take_in(SAMPLES / name, directory, Limits())
     picture = decode(SAMPLES / name, Limits())
     assert list(directory.iterdir()) == [stored.path]
     assert (stored.height, stored.width, stored.channels) == picture.pixels.shape
@@ -78,7 +78,7 @@ def test_a_photograph_is_stored_as_a_png_of_the_pixels_that_were_decoded(directo
 def test_sixteen_bits_and_transparency_are_stored(tmp_path: Path, directory: Path, noise: Noise) -> None:
     pixels = noise(40, 30, 4, dtype=np.uint16)
     (tmp_path / "upload").write_bytes(imagecodecs.png_encode(pixels))
-    stored = intake(tmp_path / "upload", directory, Limits())
+    stored = take_in(tmp_path / "upload", directory, Limits())
     assert (stored.width, stored.height, stored.channels, stored.depth, stored.transparent) == (30, 40, 3, 16, True)
     np.testing.assert_array_equal(imagecodecs.png_decode(stored.path.read_bytes()), pixels)
 
@@ -94,7 +94,7 @@ def test_no_byte_of_the_metadata_is_stored(tmp_path: Path, directory: Path) -> N
             image.save(written, file_format, exif=exif, xmp=b"<x>" + secret + b"</x>", comment=secret)
         (tmp_path / "upload").write_bytes(written.getvalue() + secret)
         assert secret in written.getvalue()
-        data = intake(tmp_path / "upload", directory, Limits()).path.read_bytes()
+        data = take_in(tmp_path / "upload", directory, Limits()).path.read_bytes()
         assert secret not in data
         names, at = [], 8
         while at < len(data):
@@ -104,7 +104,7 @@ def test_no_byte_of_the_metadata_is_stored(tmp_path: Path, directory: Path) -> N
 
 
 def test_the_server_forks_from_a_single_thread(directory: Path) -> None:
-    intake(SAMPLES / "tiles02.png", directory, Limits())
+    take_in(SAMPLES / "tiles02.png", directory, Limits())
     assert server_process().num_threads() == 1
 
 
@@ -112,7 +112,7 @@ def test_those_who_wait_too_long_for_their_turn_are_told(directory: Path, monkey
     monkeypatch.setattr(module, "_turn", threading.BoundedSemaphore(1))
     monkeypatch.setattr(module, "WAIT_SECONDS", 0.01)
     with module._turn, pytest.raises(BusyError, match="try again"):
-        intake(SAMPLES / "tiles02.png", directory, Limits())
+        take_in(SAMPLES / "tiles02.png", directory, Limits())
 
 
 @pytest.mark.parametrize(
@@ -127,14 +127,14 @@ def test_those_who_wait_too_long_for_their_turn_are_told(directory: Path, monkey
 def test_a_refusal_leaves_no_file(tmp_path: Path, directory: Path, content: bytes, error: type[AppError]) -> None:
     (tmp_path / "upload").write_bytes(content)
     with pytest.raises(error):
-        intake(tmp_path / "upload", directory, Limits())
+        take_in(tmp_path / "upload", directory, Limits())
     assert not list(directory.iterdir())
 
 
 def test_a_picture_that_takes_too_long_is_killed(slow: Path, directory: Path) -> None:
-    intake(SAMPLES / "tiles02.png", directory, Limits())
+    take_in(SAMPLES / "tiles02.png", directory, Limits())
     with pytest.raises(TooLargeError, match=r"more than the 0\.5 seconds"):
-        intake(slow, directory, Limits(seconds=0.5))
+        take_in(slow, directory, Limits(seconds=0.5))
     assert len(list(directory.iterdir())) == 1
     assert not server_process().children()
 
@@ -144,7 +144,7 @@ def test_a_bomb_that_takes_too_much_memory_is_refused(
 ) -> None:
     (tmp_path / "bomb").write_bytes(png_saying(6000, 6000, 8, 2, bytes(6000 * 18001)))
     with pytest.raises(TooLargeError, match="more than the 64 MB of memory"):
-        intake(tmp_path / "bomb", directory, Limits(memory=64 << 20))
+        take_in(tmp_path / "bomb", directory, Limits(memory=64 << 20))
     assert not list(directory.iterdir())
 
 
@@ -154,16 +154,16 @@ def test_several_are_taken_in_at_once(tmp_path: Path, directory: Path, noise: No
         uploads.append(tmp_path / f"upload{number}")
         Image.fromarray(noise(20 + number, 30, 3)).save(uploads[-1], "png")
     with ThreadPoolExecutor(12) as pool:
-        stored = list(pool.map(lambda upload: intake(upload, directory, Limits()), uploads))
+        stored = list(pool.map(lambda upload: take_in(upload, directory, Limits()), uploads))
     assert [each.height for each in stored] == list(range(20, 32))
     assert len({each.path for each in stored}) == 12
 
 
 def test_a_slow_picture_does_not_hold_up_the_others_and_a_crash_is_told(slow: Path, directory: Path) -> None:
     with ThreadPoolExecutor(1) as pool:
-        hopeless = pool.submit(intake, slow, directory, Limits(seconds=60))
+        hopeless = pool.submit(take_in, slow, directory, Limits(seconds=60))
         decoder = until(server_process().children)[0]
-        intake(SAMPLES / "tiles02.png", directory, Limits())
+        take_in(SAMPLES / "tiles02.png", directory, Limits())
         assert not hopeless.done()
         decoder.kill()
         with pytest.raises(BrokenFileError, match="decoder failed"):
@@ -172,7 +172,7 @@ def test_a_slow_picture_does_not_hold_up_the_others_and_a_crash_is_told(slow: Pa
 
 def test_a_killed_server_is_started_again_and_its_children_die_with_it(slow: Path, directory: Path) -> None:
     with ThreadPoolExecutor(1) as pool:
-        hopeless = pool.submit(intake, slow, directory, Limits(seconds=60))
+        hopeless = pool.submit(take_in, slow, directory, Limits(seconds=60))
         first = server_process()
         decoder = until(first.children)[0]
         first.kill()
@@ -183,15 +183,15 @@ def test_a_killed_server_is_started_again_and_its_children_die_with_it(slow: Pat
             hopeless.result()
     assert server_process().pid != first.pid
     server_process().kill()
-    assert intake(SAMPLES / "tiles02.png", directory, Limits()).width == 256
+    assert take_in(SAMPLES / "tiles02.png", directory, Limits()).width == 256
 
 
 def test_nothing_outlives_a_killed_parent(slow: Path, directory: Path) -> None:
     program = f"""
 from pathlib import Path
 from app.images.decode import Limits
-from app.images.intake.client import intake
-intake(Path({str(slow)!r}), Path({str(directory)!r}), Limits(seconds=60))
+from app.images.intake.client import take_in
+take_in(Path({str(slow)!r}), Path({str(directory)!r}), Limits(seconds=60))
 """
     parent = subprocess.Popen([sys.executable, "-c", program], start_new_session=True)
     try:
@@ -210,9 +210,9 @@ from pathlib import Path
 with open({str(tmp_path / "runs")!r}, "a") as runs:
     runs.write("run")
 from app.images.decode import Limits
-from app.images.intake.client import intake
+from app.images.intake.client import take_in
 for _ in range(3):
-    intake(Path({str(SAMPLES / "tiles02.png")!r}), Path({str(directory)!r}), Limits())
+    take_in(Path({str(SAMPLES / "tiles02.png")!r}), Path({str(directory)!r}), Limits())
 """)
     subprocess.run([sys.executable, program], check=True)
     assert (tmp_path / "runs").read_text() == "run"
@@ -249,7 +249,7 @@ def test_damaged_files_are_read_or_refused_and_harm_nothing(
     content = content[: data.draw(st.one_of(st.just(len(content)), st.integers(0, len(content))))]
     (tmp_path / "upload").write_bytes(content)
     try:
-        stored = intake(tmp_path / "upload", directory, Limits(pixels=1_000_000, seconds=5, memory=512 << 20))
+        stored = take_in(tmp_path / "upload", directory, Limits(pixels=1_000_000, seconds=5, memory=512 << 20))
     except AppError:
         assert not list(directory.iterdir())
     else:
