@@ -87,7 +87,7 @@ def all_outputs(side: int) -> Callable[[], None]:
     context = Context(8, THREADS, lambda stage, fraction: None)
 
     def run() -> None:
-        for _ in rpn.run([source], rpn.params(width=side, height=side), context):
+        for _ in rpn.pictures([source], rpn.params(width=side, height=side), context):
             pass
 
     return run

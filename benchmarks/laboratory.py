@@ -70,7 +70,7 @@ class Case:
         params = entry.params(**self.parameters)
 
         def run() -> None:
-            pictures = entry.run(sources, params, Context(8, THREADS, lambda stage, fraction: None))
+            pictures = entry.pictures(sources, params, Context(8, THREADS, lambda stage, fraction: None))
             if self.everything:
                 for _ in pictures:
                     pass

@@ -52,7 +52,7 @@ def still(name: str, side: int, crop: int, **parameters: Any) -> Callable[[], ob
     entry = method(name)
     sources = [Source(sample(size), 255) for size in ([crop, side] if name == "transfer" else [crop])]
     params = entry.params(width=side, height=side, **parameters)
-    return lambda: next(entry.run(sources, params, Context(8, THREADS, lambda stage, fraction: None)))
+    return lambda: next(entry.pictures(sources, params, Context(8, THREADS, lambda stage, fraction: None)))
 
 
 @cache
@@ -74,7 +74,7 @@ def pictures(name: str, frames: int, context: Context) -> Iterator[Picture]:
     """What a video method makes of the clip; the pattern is a still of noise."""
     entry = method(name)
     sources = [clip(), Source(sample(320), 255)][: len(entry.inputs)]
-    return entry.run(sources, entry.params(width=320, height=320, frames=frames), context)
+    return entry.pictures(sources, entry.params(width=320, height=320, frames=frames), context)
 
 
 def film(name: str, frames: int) -> Callable[[], None]:

@@ -46,14 +46,14 @@ def directly(photo: Path, seed: int, threads: int) -> int:
     rpn = method("rpn")
     source = Source(read_crop(photo, CROP), 255)
     context = Context(8, threads, lambda stage, fraction: None)
-    return sum(len(picture.data) for picture in rpn.run([source], rpn.params(seed=seed), context))
+    return sum(len(picture.data) for picture in rpn.pictures([source], rpn.params(seed=seed), context))
 
 
 def kernel(photo: Path, seed: int, threads: int) -> None:
     """Compute the texture alone, crop in memory, to its PNG."""
     rpn = method("rpn")
     source = Source(read_crop(photo, CROP), 255)
-    next(rpn.run([source], rpn.params(seed=seed), Context(8, threads, lambda stage, fraction: None)))
+    next(rpn.pictures([source], rpn.params(seed=seed), Context(8, threads, lambda stage, fraction: None)))
 
 
 def line(name: str, value: float, unit: str, aim: float | None = None, *, least: bool = False, note: str = "") -> None:

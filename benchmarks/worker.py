@@ -44,7 +44,7 @@ def measure(side: int, threads: int, everything: bool) -> Measured:
     params = rpn.params(seed=1, width=side, height=side)
     before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
     start = time.perf_counter()
-    pictures = rpn.run([source], params, Context(8, threads, lambda stage, fraction: None))
+    pictures = rpn.pictures([source], params, Context(8, threads, lambda stage, fraction: None))
     if everything:
         for _ in pictures:
             pass

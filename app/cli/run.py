@@ -27,10 +27,11 @@ from app.cli.files import (
 from app.errors import InvalidInputError, NotFoundError
 from app.experiments.diagnostics import diagnose
 from app.experiments.model import Experiment, ExperimentInput, Sample
-from app.experiments.preparation import Allowed, Answer, NewExperiment, NewInput, prepare
+from app.experiments.preparation import Answer, NewExperiment, NewInput, prepare
 from app.experiments.run import METHOD_SHARE, only
 from app.images.crop import Frames, Rectangle
 from app.images.decode import Decoded, Limits, decode
+from app.methods.allowed import Allowed
 from app.methods.effects import outputs_of
 from app.methods.model import Context, Film, Method, Picture, Progress, Source
 from app.methods.params import StillParams
@@ -137,7 +138,7 @@ class _Ready:
         """Run it; large pictures are files until the block ends."""
         with tempfile.TemporaryDirectory() as scratch:
             context = Context(self.experiment.depth, threads, progress, Path(scratch))
-            yield method_named(self.experiment.method).run(self.sources, self.params, context)
+            yield method_named(self.experiment.method).pictures(self.sources, self.params, context)
 
 
 def _ready(request: Request, answer: Answer, settings: Settings) -> _Ready:

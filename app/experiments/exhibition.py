@@ -9,11 +9,12 @@ from dataclasses import dataclass, replace
 from app.errors import AppError, DeletedError, NotFoundError
 from app.experiments.model import Experiment, Status
 from app.experiments.ports import Executor, ExperimentStore
-from app.experiments.preparation import Allowed, NewExperiment, NewInput, prepare
+from app.experiments.preparation import NewExperiment, NewInput, prepare
 from app.experiments.samples import SampleIntake
 from app.gallery.exhibits import exhibits
 from app.gallery.identity import identifier
 from app.images.crop import Rectangle
+from app.methods.allowed import Allowed
 from app.methods.explanations.model import Exhibit
 from app.settings import Settings
 

@@ -8,20 +8,19 @@ from typing import Any, Literal
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from app.errors import InvalidInputError, TooLargeError
+from app.errors import InvalidInputError
 from app.experiments.model import Experiment, ExperimentInput, Sample
 from app.experiments.tokens import new_identifier
 from app.images.crop import Frames, Rectangle
+from app.methods.allowed import Allowed
 from app.methods.effects import output_named, outputs_of, refuse_deep, without_effect
 from app.methods.fields import fields, reason, requirement
 from app.methods.model import Method, Size, Slot
-from app.methods.params import MovingParams, StillParams
+from app.methods.params import StillParams
 from app.methods.registry import method as method_named
 from app.numbers import said
-from app.settings import MEBIBYTE, Settings
 
 LEAST_FRAMES = 2
-WORKING_SHARE = 0.75  # of a worker's memory; the rest is the interpreter's, the libraries' and the encoders'
 
 
 @dataclass(frozen=True)
@@ -31,21 +30,6 @@ class NewInput:
     sample: str
     crop: Rectangle | None = None
     frames: Frames | None = None
-
-
-@dataclass(frozen=True)
-class Allowed:
-    """What a texture may have and take: pixels (of a video, of one frame and of all) and a worker's bytes of memory."""
-
-    pixels: int
-    video_pixels: int
-    memory: int
-
-    @classmethod
-    def by(cls, settings: Settings) -> "Allowed":
-        """What the settings allow."""
-        memory = int(settings.worker_memory * WORKING_SHARE)
-        return cls(settings.max_output_pixels, settings.max_film_pixels, memory)
 
 
 @dataclass(frozen=True)
@@ -113,17 +97,11 @@ def prepare(
         depths.add(found.depth)
         sizes.append(Size(crop.width, crop.height, found.channels, frames.count))
     params = _params(method, request.parameters)
-    width, height = method.size(sizes)
-    filled = {"width": params.width or width, "height": params.height or height}
-    if isinstance(params, MovingParams):
-        filled["frames"] = params.frames or max(size.frames for size in sizes)
-    params = params.model_copy(update=filled)
-    _check_pixels(method, params, allowed)
-    method.check(sizes, params)
+    params = method.resolve(sizes, params, allowed).params
     if request.answer is not None:
         _check_answer(method, sizes, params, request, max(depths))
         depths.add(request.answer.depth or 8)
-    _check_memory(method, _memory(method, sizes, params), allowed)
+    allowed.refuse_memory(method.memory_of(sizes, params), moving=method.moving)
     return Experiment(
         id=new_identifier(),
         method=method.name,
@@ -144,11 +122,7 @@ def memory_of(experiment: Experiment, sample: Callable[[str], Sample]) -> int:
         Size(item.crop.width, item.crop.height, sample(item.sample).channels, item.frames.count)
         for item in experiment.inputs
     ]
-    return _memory(method, sizes, method.params.model_validate(experiment.parameters))
-
-
-def _memory(method: Method, sizes: list[Size], params: StillParams) -> int:
-    return 0 if method.memory is None else method.memory(sizes, params)
+    return method.memory_of(sizes, method.params.model_validate(experiment.parameters))
 
 
 def _check_count(method: Method, given: int) -> None:
@@ -161,24 +135,6 @@ def _check_count(method: Method, given: int) -> None:
     raise InvalidInputError(f"The method {method.name} takes {wanted} {noun} ({names}), not {given}.", "inputs")
 
 
-def _check_pixels(method: Method, params: StillParams, limits: Allowed) -> None:
-    pixels = (params.width or 0) * (params.height or 0)
-    maker, allowed = "this service", limits.pixels
-    if isinstance(params, MovingParams) and pixels * (params.frames or 1) > limits.video_pixels:
-        raise TooLargeError(
-            f"A video of {params.frames} frames of {params.width} × {params.height} has "
-            f"{pixels * (params.frames or 1) / 1e6:.0f} megapixels; {maker} makes at most "
-            f"{limits.video_pixels / 1e6:.0f}: ask for fewer frames, or for a smaller width or height."
-        )
-    if method.most_pixels is not None and method.most_pixels < allowed:
-        maker, allowed = f"the method {method.name}", method.most_pixels
-    if pixels > allowed:
-        raise TooLargeError(
-            f"A texture of {params.width} × {params.height} has {pixels / 1e6:.0f} megapixels; {maker} makes at most "
-            f"{allowed / 1e6:.0f}: ask for a smaller width or height."
-        )
-
-
 def _check_answer(method: Method, sizes: list[Size], params: StillParams, request: NewExperiment, deepest: int) -> None:
     assert request.answer is not None
     wanted = [output.name for output in outputs_of(method, params, len(sizes))]
@@ -189,19 +145,6 @@ def _check_answer(method: Method, sizes: list[Size], params: StillParams, reques
             refuse_deep(output, deepest)
     for name, words in without_effect(method, sizes, params, request.parameters.keys(), wanted).items():
         raise InvalidInputError(words, f"parameters.{name}")
-
-
-def _check_memory(method: Method, needed: int, allowed: Allowed) -> None:
-    if needed > allowed.memory:
-        smaller = (
-            "a shorter or smaller crop, fewer frames, or a smaller width and height"
-            if method.moving
-            else ("a smaller crop, or a smaller width and height")
-        )
-        raise TooLargeError(
-            f"This run would need about {needed / MEBIBYTE:,.0f} MB of memory, and a worker of this service has "
-            f"{allowed.memory / MEBIBYTE:,.0f} MB for it: take {smaller}."
-        )
 
 
 def _frames(wanted: NewInput, sample: Sample, slot: Slot, field: str) -> Frames:

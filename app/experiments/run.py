@@ -167,7 +167,7 @@ def _pictures(
     def scaled(stage: str, fraction: float) -> None:
         progress(stage, METHOD_SHARE * fraction)
 
-    return method.run(sources, params, Context(depth, threads, scaled, scratch))
+    return method.pictures(sources, params, Context(depth, threads, scaled, scratch))
 
 
 @contextmanager

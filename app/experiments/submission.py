@@ -5,9 +5,10 @@ from dataclasses import dataclass, replace
 from app.errors import BusyError, ConflictError, DeletedError, NotFoundError
 from app.experiments.model import Experiment
 from app.experiments.ports import Executor, ExperimentStore
-from app.experiments.preparation import Allowed, NewExperiment, memory_of, prepare
+from app.experiments.preparation import NewExperiment, memory_of, prepare
 from app.experiments.samples import SampleIntake
 from app.experiments.tokens import derived_identifier, new_identifier, new_token, token_digest
+from app.methods.allowed import Allowed
 from app.settings import Settings
 
 

@@ -106,13 +106,13 @@ def without_effect(
     sizes : sequence of Size
         Of the inputs.
     params : StillParams
-        Complete.
+        All of them, with the defaults of those that were left out.
     given : collection of str
         Names of the parameters that were typed.
     wanted : collection of str
         Names of the outputs that are asked for.
     """
-    idle = method.idle(sizes, params)
+    idle = method.idle(sizes, method.fill(sizes, params))
     present = outputs_of(method, params, len(sizes))
     found: dict[str, str] = {}
     for name, field in method.params.model_fields.items():

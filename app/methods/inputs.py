@@ -1,11 +1,13 @@
 """What methods of several samples have in common: they need the same range of values and the same channels."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from app.errors import InvalidInputError
 from app.methods.model import Size, Slot, Source
+from app.methods.params import Resolved
 from app.synthesis.arrays import Real
 
 
@@ -33,19 +35,10 @@ def alike(sources: Sequence[Source]) -> list[Real]:
     return found
 
 
-def refuse_infinite(sources: Sequence[Source]) -> None:
-    """Raise `InvalidInputError` if an input holds values that are not finite numbers."""
-    for index, source in enumerate(sources):
-        if not np.isfinite(source.pixels).all():
-            raise InvalidInputError(
-                "The crop holds values that are not finite numbers: save it anew.", f"inputs.{index}"
-            )
-
-
 INPUTS = (Slot("sample", "Sample", "A photograph; crop a homogeneous region of it."),)
 
 
-def refuse_other_size(size: Size, width: int, height: int) -> None:
+def refuse_other_size(size: Size, resolved: Resolved[Any]) -> None:
     """Refuse to add the smooth component of a crop to a texture of another size.
 
     Raises
@@ -53,6 +46,7 @@ def refuse_other_size(size: Size, width: int, height: int) -> None:
     InvalidInputError
         At ``parameters.add_smooth``.
     """
+    width, height = resolved.width, resolved.height
     if (width, height) != (size.width, size.height):
         raise InvalidInputError(
             f"The smooth component can be added only to a texture of the crop's own size, {size.width} × {size.height} "

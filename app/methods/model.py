@@ -12,9 +12,11 @@ from typing import Any, Literal, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from app.errors import InvalidInputError
+from app.methods.allowed import Allowed
 from app.methods.announced import Announced
 from app.methods.explanations.model import Explanation, Reference
-from app.methods.params import StillParams
+from app.methods.params import MovingParams, Resolved, StillParams
 
 
 class Progress(Protocol):
@@ -66,6 +68,19 @@ class Source:
     pixels: NDArray[np.float32]
     peak: int
     film: Film | None = None
+
+    @property
+    def clip(self) -> Film:
+        """The video of an input of a moving slot.
+
+        Raises
+        ------
+        TypeError
+            For a still picture.
+        """
+        if self.film is None:
+            raise TypeError("This input is a still picture, and its slot takes a video.")
+        return self.film
 
     @property
     def size(self) -> Size:
@@ -166,13 +181,15 @@ class Method:
         The main one first.
     explanation : Explanation
         Its page.
-    check : callable ``(sizes, params) -> None``
-        Raises `app.errors.InvalidInputError` for a combination that cannot run, before anything is queued.
-    run : callable ``(sources, params, context) -> iterator of Picture``
+    run : callable ``(sources, resolved, context) -> iterator of Picture``
         Yields its pictures as they are made, the main one, ``texture``, first; what is not asked for is not computed.
         Among them is ``crop``, and ``crop-2``, … for further inputs (see `app.methods.output.pictures.crops`).
+        Its inputs are finite and its `Resolved` parameters have passed ``check``: see `pictures`, which calls it.
     outputs : tuple of Announced
         Every picture that it may yield, in that order.
+    check : callable ``(sizes, resolved) -> None``
+        Raises `app.errors.InvalidInputError` for a combination that cannot run, before anything is queued; default:
+        nothing is refused.
     more : int
         How many further inputs like the last one it takes.
     size : callable ``(sizes) -> (width, height)``
@@ -184,10 +201,9 @@ class Method:
     phase : bool
         Whether it is driven by the random phase that `rpn` and `adsn` share: at one seed and size all such methods
         have the same phase.
-    memory : callable ``(sizes, params) -> int``, optional
-        Bytes that a run needs at its peak beside the interpreter, for one whose need grows with what is asked for;
-        widths, heights and frames are filled in.
-    idle : callable ``(sizes, params) -> mapping``, optional
+    memory : callable ``(sizes, resolved) -> int``, optional
+        Bytes that a run needs at its peak beside the interpreter, for one whose need grows with what is asked for.
+    idle : callable ``(sizes, resolved) -> mapping``, optional
         Parameters that change nothing with these others, each with when they do and what to do, in words.
     """
 
@@ -198,16 +214,16 @@ class Method:
     params: type[StillParams]
     references: tuple[Reference, ...]
     explanation: Explanation
-    check: Callable[[Sequence[Size], Any], None]
-    run: Callable[[Sequence[Source], Any, Context], Iterator[Picture]]
+    run: Callable[[Sequence[Source], Resolved[Any], Context], Iterator[Picture]]
     outputs: tuple[Announced, ...]
+    check: Callable[[Sequence[Size], Resolved[Any]], None] = lambda sizes, resolved: None
     more: int = 0
     size: Callable[[Sequence[Size]], tuple[int, int]] = first_size
     toroidal: Callable[[Any], bool] = lambda params: True
     most_pixels: int | None = None
     phase: bool = False
-    memory: Callable[[Sequence[Size], Any], int] | None = None
-    idle: Callable[[Sequence[Size], Any], Mapping[str, str]] = lambda sizes, params: {}
+    memory: Callable[[Sequence[Size], Resolved[Any]], int] | None = None
+    idle: Callable[[Sequence[Size], Resolved[Any]], Mapping[str, str]] = lambda sizes, resolved: {}
 
     def slot(self, index: int) -> Slot:
         """The slot of an input, from 0; further inputs are like the last one."""
@@ -217,3 +233,71 @@ class Method:
     def moving(self) -> bool:
         """Whether it makes videos, of which `MovingParams` are the parameters."""
         return any(slot.moving for slot in self.inputs)
+
+    def fill(self, sizes: Sequence[Size], params: StillParams) -> Resolved[Any]:
+        """Fill in width, height and frames as `resolve` does, and refuse nothing."""
+        width, height = self.size(sizes)
+        filled = {"width": params.width or width, "height": params.height or height}
+        if isinstance(params, MovingParams):
+            filled["frames"] = params.frames or max(size.frames for size in sizes)
+        return Resolved(params.model_copy(update=filled), **filled)
+
+    def resolve(self, sizes: Sequence[Size], params: StillParams, allowed: Allowed | None = None) -> Resolved[Any]:
+        """Fill in the size of the texture where it was left empty, and refuse what cannot run.
+
+        Parameters
+        ----------
+        sizes : sequence of Size
+            Of the inputs, in the order of the slots.
+        params : StillParams
+            The method's own; resolving them again changes nothing.
+        allowed : Allowed, optional
+            What a service makes at most; by default any size.
+
+        Raises
+        ------
+        InvalidInputError
+            From ``check``, with the field at fault.
+        TooLargeError
+            If the texture has more pixels than are allowed.
+
+        Examples
+        --------
+        >>> from app.methods.registry import METHODS
+        >>> resolved = METHODS["rpn"].resolve([Size(300, 200, 3)], METHODS["rpn"].params(width=512))
+        >>> resolved.width, resolved.height, resolved.params.height
+        (512, 200, 200)
+        """
+        resolved = self.fill(sizes, params)
+        if allowed is not None:
+            allowed.refuse_pixels(resolved, self.name, self.most_pixels)
+        self.check(sizes, resolved)
+        return resolved
+
+    def pictures(self, sources: Sequence[Source], params: StillParams, context: Context) -> Iterator[Picture]:
+        """Run the method: its pictures as they are made, ``texture`` first.
+
+        Parameters
+        ----------
+        sources : sequence of Source
+            One for each slot, and further ones like the last.
+        params : StillParams
+            The method's own, as typed or resolved.
+        context : Context
+
+        Raises
+        ------
+        InvalidInputError
+            At once, if `resolve` refuses or an input holds values that are not finite.
+        """
+        resolved = self.resolve([source.size for source in sources], params)
+        for index, source in enumerate(sources):
+            if not np.isfinite(source.pixels).all():
+                raise InvalidInputError(
+                    "The crop holds values that are not finite numbers: save it anew.", f"inputs.{index}"
+                )
+        return self.run(sources, resolved, context)
+
+    def memory_of(self, sizes: Sequence[Size], params: StillParams) -> int:
+        """Bytes that a run needs at its peak, as far as the method declares it; else 0."""
+        return 0 if self.memory is None else self.memory(sizes, self.fill(sizes, params))

@@ -1,4 +1,7 @@
-"""Parameters that several methods share."""
+"""Parameters that several methods share, as a person types them and resolved."""
+
+from dataclasses import dataclass
+from typing import Generic, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic.config import JsonDict
@@ -61,3 +64,31 @@ class SeamlessParams(LoopParams):
     tileable: bool = Field(
         True, title="Tileable", description="Opposite edges of every frame meet, so that it tiles without a seam."
     )
+
+
+P_co = TypeVar("P_co", bound=StillParams, covariant=True)
+
+
+@dataclass(frozen=True)
+class Resolved(Generic[P_co]):
+    """A method's parameters with the size of the texture filled in: what a run starts from.
+
+    Parameters
+    ----------
+    params : StillParams
+        The method's own, whose width, height and frames are those below.
+    width, height : int
+        Pixels of the texture.
+    frames : int
+        Of a video; 1 of a still texture.
+    """
+
+    params: P_co
+    width: int
+    height: int
+    frames: int = 1
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Frames, height and width, in the order of an array's axes."""
+        return self.frames, self.height, self.width

@@ -88,7 +88,7 @@ def textured(directory: Path, name: str, progress: Progress) -> None:
     crop = np.random.default_rng(3).integers(0, 256, (512, 512, 3)).astype(np.float32)
     rpn = method("rpn")
     before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
-    for _ in rpn.run([Source(crop, 255)], rpn.params(seed=1), Context(8, 2, progress)):
+    for _ in rpn.pictures([Source(crop, 255)], rpn.params(seed=1), Context(8, 2, progress)):
         pass
     (directory / f"{name}.faults").write_text(str(resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before))
 

@@ -14,12 +14,13 @@ import pytest
 from app.errors import DeletedError, ForbiddenError, NotFoundError
 from app.experiments import exhibition
 from app.experiments.model import Status
-from app.experiments.preparation import Allowed, NewExperiment, NewInput, prepare
+from app.experiments.preparation import NewExperiment, NewInput, prepare
 from app.experiments.service import Service
 from app.gallery.exhibits import exhibits
 from app.gallery.groups import groups
 from app.gallery.identity import identifier
 from app.images.crop import Rectangle
+from app.methods.allowed import Allowed
 from app.methods.explanations.model import Exhibit
 from app.methods.registry import METHODS
 from app.settings import ROOT, Settings

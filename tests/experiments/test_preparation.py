@@ -8,8 +8,9 @@ import pytest
 
 from app.errors import InvalidInputError, TooLargeError
 from app.experiments.model import Experiment, Sample
-from app.experiments.preparation import Allowed, NewExperiment, NewInput, memory_of, prepare
+from app.experiments.preparation import NewExperiment, NewInput, memory_of, prepare
 from app.images.crop import Frames, Rectangle
+from app.methods.allowed import Allowed
 
 SAMPLES = {
     name: Sample(width, height, channels, 8, False, id=name, digest="", created_at=datetime(2026, 3, 1, tzinfo=UTC))

@@ -19,7 +19,7 @@ def texture(exhibit):
     drawing = np.asarray(imread(ROOT / "samples" / "two_sinusoids.png"), np.float32).reshape(SIDE, SIDE, 1)
     method = METHODS[exhibit.method]
     params = method.params(**{"width": SIDE, "height": SIDE, **exhibit.parameters})
-    made = next(iter(method.run([Source(drawing, 255)], params, Context(8, 1, lambda stage, fraction: None))))
+    made = next(iter(method.pictures([Source(drawing, 255)], params, Context(8, 1, lambda stage, fraction: None))))
     return png_decode(made.data).astype(float).reshape(SIDE, SIDE)
 
 

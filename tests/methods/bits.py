@@ -22,7 +22,7 @@ from app.images.video import writers
 from app.images.video.reader import read_video
 from app.methods.model import Method
 from app.methods.registry import METHODS
-from tests.methods.runs import run, sources_for
+from tests.methods.runs import run_small, sources_for
 
 PLAIN_CODECS = "MICROTEXTURE_TEST_PLAIN_CODECS"
 # x264's plain C takes other decisions than its code for SSSE3, without which numpy does not start.
@@ -66,12 +66,12 @@ def main(directory: Path) -> None:
         for case, shape, parameters in cases(method):
             sources = sources_for(method, **shape)
             try:
-                pictures = list(run(method, sources, depth=depth, scratch=directory, seed=5, **parameters))
+                made = list(run_small(method, sources, depth=depth, scratch=directory, seed=5, **parameters))
             except InvalidInputError:
                 if case in {"as it comes", "grey"}:
                     raise
                 continue  # some cannot be larger, and some choices need others
-            for picture in pictures:
+            for picture in made:
                 target = directory / f"{name} {case} {picture.name}"
                 if isinstance(picture.data, Path):
                     picture.data.rename(target)

@@ -1,13 +1,14 @@
 """Small inputs for any method, and running it on them."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from app.methods.model import Context, Film, Method, Picture, Progress, Source
-from app.methods.params import MovingParams
+from app.methods.params import StillParams
 
 # What methods that copy patches need to run on inputs as small as these.
 SMALL: Mapping[str, Mapping[str, Any]] = {
@@ -42,7 +43,7 @@ def sources_for(method: Method, **shape: Any) -> list[Source]:
     return [maker(**shape, seed=number) for number, maker in enumerate(makers)]
 
 
-def run(
+def run_small(
     method: Method,
     sources: Sequence[Source],
     *,
@@ -52,14 +53,11 @@ def run(
     scratch: Path | None = None,
     **parameters: Any,
 ) -> Iterator[Picture]:
-    """Run a method as the service does: sizes and frames filled in, and checked before."""
-    sizes = [source.size for source in sources]
-    params = method.params(**{**SMALL.get(method.name, {}), **parameters})
-    width, height = method.size(sizes)
-    filled = {"width": params.width or width, "height": params.height or height}
-    if isinstance(params, MovingParams):
-        filled["frames"] = params.frames or max(size.frames for size in sizes)
-    params = params.model_copy(update=filled)
-    method.check(sizes, params)
+    """Run a method with what it needs for small inputs."""
     context = Context(depth, threads, progress)
-    return method.run(sources, params, context if scratch is None else Context(depth, threads, progress, scratch))
+    return method.pictures(sources, small(method, **parameters), replace(context, scratch=scratch or context.scratch))
+
+
+def small(method: Method, **parameters: Any) -> StillParams:
+    """A method's parameters for small inputs."""
+    return method.params(**{**SMALL.get(method.name, {}), **parameters})

@@ -10,7 +10,7 @@ from app.methods.effects import COMMON, outputs_of, without_effect
 from app.methods.fields import fields
 from app.methods.model import Method, Source
 from app.methods.registry import METHODS
-from tests.methods.runs import SMALL, run, sources_for
+from tests.methods.runs import run_small, small, sources_for
 
 DEPTH_AT = 24  # where a PNG file says its bits per channel
 # Beside the defaults: what makes more pictures, or fewer; and how many inputs.
@@ -55,20 +55,10 @@ def inputs_of(method: Method, count: int) -> list[Source]:
 
 def made(method: Method, sources: Sequence[Source], scratch: Path, **parameters: Any) -> dict[str, tuple[Any, bytes]]:
     """Every picture by its name, with its file."""
-    pictures = run(method, sources, scratch=scratch, **parameters)
     return {
         picture.name: (picture, picture.data.read_bytes() if isinstance(picture.data, Path) else picture.data)
-        for picture in pictures
+        for picture in run_small(method, sources, scratch=scratch, **parameters)
     }
-
-
-def complete(method: Method, sources: Sequence[Source], parameters: Mapping[str, Any]) -> Any:
-    params = method.params(**{**SMALL.get(method.name, {}), **parameters})
-    width, height = method.size([source.size for source in sources])
-    filled = {"width": params.width or width, "height": params.height or height}
-    if method.moving:
-        filled["frames"] = parameters.get("frames") or sources[0].size.frames
-    return params.model_copy(update=filled)
 
 
 @pytest.mark.parametrize(("name", "parameters", "count"), VARIANTS, ids=str)
@@ -78,7 +68,7 @@ def test_the_announced_outputs_are_those_that_come(
     """By name, kind, type and order; and those come at 16 bits of which it is said, every still texture among them."""
     method = METHODS[name]
     sources = inputs_of(method, count)
-    announced = outputs_of(method, complete(method, sources, parameters), count)
+    announced = outputs_of(method, small(method, **parameters), count)
     pictures = made(method, sources, tmp_path, depth=16, **parameters)
     assert [output.name for output in announced] == list(pictures)
     for output, (picture, data) in zip(announced, pictures.values(), strict=True):
@@ -146,7 +136,7 @@ def test_a_parameter_changes_what_it_is_announced_to_change_and_nothing_else(
     expected = {output.name for output in method.outputs if output.changed_by(parameter)}
     assert changed <= expected
     sizes = [source.size for source in sources]
-    params = complete(method, sources, {**base, parameter: value})
+    params = small(method, **{**base, parameter: value})
     idle = bool(without_effect(method, sizes, params, {parameter}, [output.name for output in method.outputs]))
     assert bool(changed) != idle
     if not idle:

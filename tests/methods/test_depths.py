@@ -15,7 +15,7 @@ from app.images.png_writer import encode_png
 from app.methods.model import Source
 from app.methods.registry import METHODS
 from app.synthesis.sinks import Levels
-from tests.methods.runs import run, sources_for
+from tests.methods.runs import run_small, sources_for
 
 STILL = {name: method for name, method in METHODS.items() if not method.moving}
 MORE = {"dsn": {"convergence": True}, "mix": {"strip": 3}}
@@ -58,7 +58,7 @@ def test_every_texture_at_sixteen_bits_is_the_rounding_of_the_engines_numbers(
     recorded = Recorded(monkeypatch)
     sources = sources_for(STILL[name], channels=channels, peak=WHITE)
     textures = 0
-    for picture in run(STILL[name], sources, depth=16, **MORE.get(name, {})):
+    for picture in run_small(STILL[name], sources, depth=16, **MORE.get(name, {})):
         values = recorded.pictures()
         if picture.kind != "texture":
             continue
@@ -83,7 +83,7 @@ def test_a_crop_of_sixteen_bits_keeps_each_of_them(name: str) -> None:
         Source(rng.integers(0, WHITE, source.pixels.shape).astype(np.float32), WHITE)
         for source in sources_for(STILL[name])
     ]
-    shown = next(picture for picture in run(STILL[name], sources, depth=16) if picture.name == "crop")
+    shown = next(picture for picture in run_small(STILL[name], sources, depth=16) if picture.name == "crop")
     assert isinstance(shown.data, bytes)
     assert np.array_equal(imagecodecs.png_decode(shown.data), sources[0].pixels)
 
@@ -95,9 +95,9 @@ def test_of_samples_of_different_depth_the_deeper_one_keeps_its_bits(first: int)
     coarse = sources_for(METHODS["mix"])[0]
     sources = [coarse, Source(fine, WHITE)] if first == 255 else [Source(fine, WHITE), coarse]
     weights = "0,1" if first == 255 else "1,0"
-    texture = next(run(METHODS["mix"], sources, depth=16, weights=weights))
+    texture = next(run_small(METHODS["mix"], sources, depth=16, weights=weights))
     assert isinstance(texture.data, bytes)
-    alone = next(run(METHODS["adsn"], [Source(fine, WHITE)], depth=16))
+    alone = next(run_small(METHODS["adsn"], [Source(fine, WHITE)], depth=16))
     assert isinstance(alone.data, bytes)
     made, expected = (imagecodecs.png_decode(data).astype(float) for data in (texture.data, alone.data))
     assert made.mean() == pytest.approx(expected.mean(), abs=1.0)

@@ -10,7 +10,7 @@ from app.errors import CancelledError
 from app.images.video.reader import read_video
 from app.methods.model import Film, Method, Picture, Source
 from app.methods.registry import METHODS
-from tests.methods.runs import run, sources_for
+from tests.methods.runs import run_small, sources_for
 
 MOVING = {name: method for name, method in METHODS.items() if method.moving}
 EVERY = pytest.mark.parametrize("method", MOVING.values(), ids=list(MOVING))
@@ -25,7 +25,7 @@ def film_of(picture: Picture) -> np.ndarray:
 
 @EVERY
 def test_its_files_come_in_order_and_only_the_webm_is_the_texture(method: Method, tmp_path: Path) -> None:
-    pictures = list(run(method, sources_for(method), scratch=tmp_path))
+    pictures = list(run_small(method, sources_for(method), scratch=tmp_path))
     names = [picture.name for picture in pictures]
     assert names[:4] == FIRST
     assert [name for name in names if name in CROPS] == CROPS
@@ -38,7 +38,7 @@ def test_its_files_come_in_order_and_only_the_webm_is_the_texture(method: Method
 @EVERY
 def test_the_crop_is_the_clip_itself(method: Method, tmp_path: Path) -> None:
     sources = sources_for(method)
-    crop = next(picture for picture in run(method, sources, scratch=tmp_path) if picture.name == "crop")
+    crop = next(picture for picture in run_small(method, sources, scratch=tmp_path) if picture.name == "crop")
     assert sources[0].film is not None
     assert np.array_equal(film_of(crop), sources[0].film.frames)
 
@@ -50,7 +50,7 @@ def test_any_size_length_and_number_of_channels(
 ) -> None:
     sources = sources_for(method, channels=channels)
     shape = {} if len(sources) > 1 else {"height": height, "width": width}  # a transfer is as large as its pattern
-    texture = next(run(method, sources, scratch=tmp_path, frames=frames, **shape))
+    texture = next(run_small(method, sources, scratch=tmp_path, frames=frames, **shape))
     film = film_of(texture)
     assert film.shape[:3] == (frames, texture.height, texture.width)
     assert not shape or (texture.height, texture.width) == (height, width)
@@ -61,7 +61,7 @@ def test_any_size_length_and_number_of_channels(
 @EVERY
 def test_the_seed_alone_decides_and_not_the_threads(method: Method, tmp_path: Path) -> None:
     def made(threads: int, seed: int) -> list[bytes]:
-        pictures = run(method, sources_for(method), scratch=tmp_path, threads=threads, seed=seed)
+        pictures = run_small(method, sources_for(method), scratch=tmp_path, threads=threads, seed=seed)
         return [p.data.read_bytes() if isinstance(p.data, Path) else p.data for p in pictures]
 
     first, again, other = made(1, 5), made(2, 5), made(2, 6)
@@ -72,7 +72,9 @@ def test_the_seed_alone_decides_and_not_the_threads(method: Method, tmp_path: Pa
 @EVERY
 def test_the_progress_never_goes_back_and_ends_at_one(method: Method, tmp_path: Path) -> None:
     seen: list[float] = []
-    assert list(run(method, sources_for(method), scratch=tmp_path, progress=lambda stage, part: seen.append(part)))
+    assert list(
+        run_small(method, sources_for(method), scratch=tmp_path, progress=lambda stage, part: seen.append(part))
+    )
     assert all(before <= after for before, after in pairwise(seen))
     assert 0 <= seen[0] < seen[-1] == pytest.approx(1)
 
@@ -87,7 +89,7 @@ def test_what_the_progress_raises_ends_the_run_and_leaves_no_file(method: Method
         if fraction >= part:
             raise CancelledError("enough")
 
-    pictures = run(method, sources_for(method), scratch=tmp_path, progress=progress)
+    pictures = run_small(method, sources_for(method), scratch=tmp_path, progress=progress)
     with pytest.raises(CancelledError):
         taken.extend(picture.data for picture in pictures if isinstance(picture.data, Path))
     assert set(tmp_path.iterdir()) == set(taken)
@@ -97,7 +99,7 @@ def test_what_the_progress_raises_ends_the_run_and_leaves_no_file(method: Method
 def test_a_constant_clip_gives_that_constant(method: Method, tmp_path: Path) -> None:
     film = np.full((12, 48, 64, 3), (40, 120, 200), np.uint8)
     constant = Source(film[0].astype(np.float32), 255, Film(film, 12.0))
-    frames = film_of(next(run(method, [constant] * len(method.inputs), scratch=tmp_path)))
+    frames = film_of(next(run_small(method, [constant] * len(method.inputs), scratch=tmp_path)))
     assert np.abs(frames.astype(int) - (40, 120, 200)).max() <= 1
 
 
@@ -109,5 +111,5 @@ def test_it_says_beforehand_how_much_memory_it_needs(method: Method) -> None:
     longer = [source.size for source in sources_for(method, frames=24)] if len(method.inputs) == 1 else sizes
     params = method.params(width=64, height=48, frames=12)
     larger = method.params(width=128, height=96, frames=12)
-    assert 0 < method.memory(sizes, params) <= method.memory(longer, params)
-    assert method.memory(sizes, params) <= method.memory(sizes, larger)
+    assert 0 < method.memory_of(sizes, params) <= method.memory_of(longer, params)
+    assert method.memory_of(sizes, params) <= method.memory_of(sizes, larger)

@@ -12,10 +12,10 @@ from app.methods.announced import shown_inputs, texture, views
 from app.methods.explanations.dsn import EXPLANATION
 from app.methods.explanations.references import IPOL_RPN, PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES, SPOT_NOISE
 from app.methods.gaussian.params import SpotParams, not_extended
-from app.methods.inputs import INPUTS, refuse_infinite
+from app.methods.inputs import INPUTS
 from app.methods.model import Context, Fact, Method, Picture, Progress, Size, Source
 from app.methods.output.pictures import crops, encode
-from app.methods.params import WHOLE_IN_MEMORY
+from app.methods.params import WHOLE_IN_MEMORY, Resolved
 from app.synthesis.arrays import Ints, Real
 from app.synthesis.fourier.spot import Spot
 from app.synthesis.fourier.spot_noise import sample_spot
@@ -59,9 +59,9 @@ class DsnParams(SpotParams):
     )
 
 
-def check(sizes: Sequence[Size], params: DsnParams) -> None:
+def check(sizes: Sequence[Size], resolved: Resolved[DsnParams]) -> None:
     """Refuse a shape that does not fit into the texture."""
-    width, height = params.width or sizes[0].width, params.height or sizes[0].height
+    params, width, height = resolved.params, resolved.width, resolved.height
     if params.spot != "sample" and 2 * params.radius + 1 > min(width, height):
         raise InvalidInputError(
             f"A spot of radius {params.radius:g} does not fit into a texture of {width} × {height} pixels: take a "
@@ -70,13 +70,10 @@ def check(sizes: Sequence[Size], params: DsnParams) -> None:
         )
 
 
-def run(sources: Sequence[Source], params: DsnParams, context: Context) -> Iterator[Picture]:
+def run(sources: Sequence[Source], resolved: Resolved[DsnParams], context: Context) -> Iterator[Picture]:
     """The texture, the gallery of its convergence if it is asked for, and what was thrown where."""
     source = sources[0]
-    size = source.size
-    check([size], params)
-    refuse_infinite(sources)
-    height, width = params.height or size.height, params.width or size.width
+    params, height, width = resolved.params, resolved.height, resolved.width
     context.progress("spot", 0.0)
     spot = _spot(source, height, width, params, context)
     kurtosis = float(excess_kurtosis(spot).mean())
@@ -110,12 +107,12 @@ def run(sources: Sequence[Source], params: DsnParams, context: Context) -> Itera
     context.progress("points", 1.0)
 
 
-def idle(sizes: Sequence[Size], params: DsnParams) -> Mapping[str, str]:
+def idle(sizes: Sequence[Size], resolved: Resolved[DsnParams]) -> Mapping[str, str]:
     """The radius of a spot that is the sample, and how a sample fades out that is not the spot."""
-    if params.spot == "sample":
+    if resolved.params.spot == "sample":
         words = "the spot is the sample, as it is; take the disc or the Gaussian as spot, or leave it out."
-        return {**not_extended(sizes, params), "radius": words}
-    words = f"the spot is no sample, but a {params.spot}; take the sample as spot, or leave it out."
+        return {**not_extended(sizes, resolved), "radius": words}
+    words = f"the spot is no sample, but a {resolved.params.spot}; take the sample as spot, or leave it out."
     return dict.fromkeys(("alpha", "window"), words)
 
 

@@ -13,10 +13,10 @@ from app.methods.explanations.mix import EXPLANATION
 from app.methods.explanations.references import GAUSSIAN_MIXING, PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
 from app.methods.gaussian.params import SpotParams, not_extended
 from app.methods.gaussian.weights import canonical
-from app.methods.inputs import alike, refuse_infinite
+from app.methods.inputs import alike
 from app.methods.model import Context, Method, Picture, Size, Slot, Source
 from app.methods.output.pictures import crops
-from app.methods.params import WHOLE_IN_MEMORY
+from app.methods.params import WHOLE_IN_MEMORY, Resolved
 from app.synthesis.fourier.field import Noise
 from app.synthesis.gaussian.adsn import white_noise
 from app.synthesis.gaussian.mixing import Mixture
@@ -59,8 +59,9 @@ class MixParams(SpotParams):
         return [weight / sum(found) for weight in found]
 
 
-def check(sizes: Sequence[Size], params: MixParams) -> None:
+def check(sizes: Sequence[Size], resolved: Resolved[MixParams]) -> None:
     """Refuse weights that are not one for each sample, and a path of a single step."""
+    params = resolved.params
     given = len(params.shares(len(sizes)))
     if given != len(sizes):
         raise InvalidInputError(
@@ -75,10 +76,10 @@ def check(sizes: Sequence[Size], params: MixParams) -> None:
         )
 
 
-def idle(sizes: Sequence[Size], params: MixParams) -> Mapping[str, str]:
+def idle(sizes: Sequence[Size], resolved: Resolved[MixParams]) -> Mapping[str, str]:
     """The extension's parameters where nothing is extended, and a path's where there is none."""
     words = f"a path needs two samples, and there are {len(sizes)}; leave the steps out."
-    return {**not_extended(sizes, params), **({"strip": words} if len(sizes) > 2 else {})}
+    return {**not_extended(sizes, resolved), **({"strip": words} if len(sizes) > 2 else {})}
 
 
 class _Strip:
@@ -103,10 +104,11 @@ class _Strip:
 class _Run:
     """One run: makes its pictures one by one."""
 
-    def __init__(self, sources: Sequence[Source], params: MixParams, context: Context, team: Team) -> None:
-        self._sources, self._params, self._context, self._team = sources, params, context, team
+    def __init__(self, sources: Sequence[Source], resolved: Resolved[MixParams], context: Context, team: Team) -> None:
+        self._sources, self._context, self._team = sources, context, team
+        self._params = params = resolved.params
+        self._height, self._width = resolved.height, resolved.width
         samples = alike(sources)
-        self._height, self._width = params.height or len(samples[0]), params.width or samples[0].shape[1]
         self._channels = samples[0].shape[2]
         self._shares = params.shares(len(sources))
         self._begin, self._end = 0.1, 0.3
@@ -154,12 +156,10 @@ class _Run:
         return Picture(name, title, self._width, self._height, writer.finish(), kind="texture")
 
 
-def run(sources: Sequence[Source], params: MixParams, context: Context) -> Iterator[Picture]:
+def run(sources: Sequence[Source], resolved: Resolved[MixParams], context: Context) -> Iterator[Picture]:
     """The barycentre; then the path between two samples, or each one's own texture if there are more."""
-    check([source.size for source in sources], params)
-    refuse_infinite(sources)
     with Team(context.threads) as team:
-        yield from _Run(sources, params, context, team).pictures()
+        yield from _Run(sources, resolved, context, team).pictures()
 
 
 _PATH, _WEIGHED = ("alpha", "window", "strip"), ("alpha", "window", "weights")

@@ -9,10 +9,10 @@ from app.errors import InvalidInputError
 from app.methods.announced import shown_inputs, texture, views
 from app.methods.explanations.modulus_phase import EXPLANATION
 from app.methods.explanations.references import OPPENHEIM_LIM, RANDOM_PHASE_TEXTURES
-from app.methods.inputs import alike, refuse_infinite
+from app.methods.inputs import alike
 from app.methods.model import Context, Method, Picture, Size, Slot, Source
 from app.methods.output.pictures import crops, encode, log_modulus
-from app.methods.params import MAX_SEED, WHOLE_IN_MEMORY, StillParams
+from app.methods.params import MAX_SEED, WHOLE_IN_MEMORY, Resolved, StillParams
 from app.numbers import FAR
 from app.synthesis.fourier.spot import centre
 from app.synthesis.gaussian.modulus_phase import centred_phase, power, swap
@@ -49,11 +49,11 @@ def common_size(sizes: Sequence[Size]) -> tuple[int, int]:
     return min(size.width for size in sizes), min(size.height for size in sizes)
 
 
-def check(sizes: Sequence[Size], params: ModulusPhaseParams) -> None:
+def check(sizes: Sequence[Size], resolved: Resolved[ModulusPhaseParams]) -> None:
     """Refuse a size beyond that of either crop."""
-    for name, most in zip(("width", "height"), common_size(sizes), strict=True):
-        asked = getattr(params, name)
-        if asked and asked > most:
+    widest, highest = common_size(sizes)
+    for name, asked, most in (("width", resolved.width, widest), ("height", resolved.height, highest)):
+        if asked > most:
             raise InvalidInputError(
                 f"Modulus and phase are swapped pixel for pixel, so the {name} can be at most that of the smaller "
                 f"crop, {most} pixels, and {asked} is asked for: take larger crops, or a smaller {name}.",
@@ -61,13 +61,9 @@ def check(sizes: Sequence[Size], params: ModulusPhaseParams) -> None:
             )
 
 
-def run(sources: Sequence[Source], params: ModulusPhaseParams, context: Context) -> Iterator[Picture]:
+def run(sources: Sequence[Source], resolved: Resolved[ModulusPhaseParams], context: Context) -> Iterator[Picture]:
     """Both swapped pictures; then modulus and phase of each crop."""
-    sizes = [source.size for source in sources]
-    check(sizes, params)
-    refuse_infinite(sources)
-    width, height = common_size(sizes)
-    width, height = params.width or width, params.height or height
+    width, height = resolved.width, resolved.height
     peak = sources[0].peak
     images = [centre(pixels, height, width) for pixels in alike(sources)]
     one, other = swap(images[0], images[1], context.threads, context.between(0, 0.5))

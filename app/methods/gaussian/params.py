@@ -6,7 +6,7 @@ from typing import Literal
 from pydantic import Field
 
 from app.methods.model import Size
-from app.methods.params import ADVANCED, StillParams
+from app.methods.params import ADVANCED, Resolved, StillParams
 
 
 class SpotParams(StillParams):
@@ -35,11 +35,9 @@ NOT_EXTENDED = "the crop fades out only in a texture that is larger than it; ask
 NO_BAND = "with α = 0 there is no band in which the crop fades out; take another α, or leave it out"
 
 
-def not_extended(sizes: Sequence[Size], params: SpotParams) -> dict[str, str]:
+def not_extended(sizes: Sequence[Size], resolved: Resolved[SpotParams]) -> dict[str, str]:
     """Say of the extension's parameters that they are idle where the texture is larger than no crop on any axis."""
-    width, height, frames = params.width, params.height, getattr(params, "frames", None)
     for size in sizes:
-        asked = ((width, size.width), (height, size.height), (frames, size.frames))
-        if any(side and side > own for side, own in asked):
-            return {"window": f"{NO_BAND}."} if params.alpha == 0 else {}
+        if resolved.width > size.width or resolved.height > size.height or resolved.frames > size.frames:
+            return {"window": f"{NO_BAND}."} if resolved.params.alpha == 0 else {}
     return dict.fromkeys(("alpha", "window"), f"{NOT_EXTENDED}.")

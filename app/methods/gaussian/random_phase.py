@@ -11,10 +11,10 @@ from app.errors import InvalidInputError
 from app.images.png_writer import PngWriter
 from app.methods.announced import shown_inputs, texture, views
 from app.methods.gaussian.params import SpotParams
-from app.methods.inputs import refuse_infinite, refuse_other_size
+from app.methods.inputs import refuse_other_size
 from app.methods.model import Context, Picture, Size, Source
 from app.methods.output.pictures import log_modulus
-from app.methods.params import ADD_SMOOTH, ADVANCED
+from app.methods.params import ADD_SMOOTH, ADVANCED, Resolved
 from app.synthesis.fourier.field import NoiseField
 from app.synthesis.fourier.periodic import smooth_planes
 from app.synthesis.fourier.spot import centre, make_spot
@@ -51,18 +51,17 @@ class RandomPhaseParams(SpotParams):
     add_smooth: bool = ADD_SMOOTH
 
 
-def check(sizes: Sequence[Size], params: RandomPhaseParams) -> None:
+def check(sizes: Sequence[Size], resolved: Resolved[RandomPhaseParams]) -> None:
     """Refuse what cannot run: the smooth component has the crop's size and no other, and must have been taken out."""
-    if params.add_smooth and not params.periodic:
+    if not resolved.params.add_smooth:
+        return
+    if not resolved.params.periodic:
         raise InvalidInputError(
             "The smooth component is part of the crop as long as the periodic component is not taken: turn “Periodic "
             "component” on to add it, or leave it out.",
             "parameters.add_smooth",
         )
-    size = sizes[0]
-    width, height = params.width or size.width, params.height or size.height
-    if params.add_smooth:
-        refuse_other_size(size, width, height)
+    refuse_other_size(sizes[0], resolved)
 
 
 Model = Callable[..., NoiseField]
@@ -72,9 +71,11 @@ Model = Callable[..., NoiseField]
 class _Run:
     """One run: makes its pictures one by one."""
 
-    def __init__(self, source: Source, params: RandomPhaseParams, context: Context, team: Team, model: Model) -> None:
-        self._source, self._params, self._context, self._team = source, params, context, team
-        self._height, self._width = params.height or source.pixels.shape[0], params.width or source.pixels.shape[1]
+    def __init__(
+        self, source: Source, resolved: Resolved[RandomPhaseParams], context: Context, team: Team, model: Model
+    ) -> None:
+        self._source, self._params, self._context, self._team = source, resolved.params, context, team
+        self._height, self._width = resolved.height, resolved.width
         self._model = model
         self._peak = 2**context.depth - 1
 
@@ -170,13 +171,12 @@ class _Run:
         return Picture(name, title, width, height, writer.finish())
 
 
-def run(sources: Sequence[Source], params: RandomPhaseParams, context: Context, *, model: Model) -> Iterator[Picture]:
+def run(
+    sources: Sequence[Source], resolved: Resolved[RandomPhaseParams], context: Context, *, model: Model
+) -> Iterator[Picture]:
     """The texture, then the steps that lead to it."""
-    source = sources[0]
-    check([source.size], params)
-    refuse_infinite(sources)
     with Team(context.threads) as team:
-        yield from _Run(source, params, context, team, model).pictures()
+        yield from _Run(sources[0], resolved, context, team, model).pictures()
 
 
 def toroidal(params: RandomPhaseParams) -> bool:

@@ -8,10 +8,10 @@ from app.errors import InvalidInputError
 from app.methods.announced import shown_inputs, texture, views
 from app.methods.explanations.rayleigh import EXPLANATION
 from app.methods.explanations.references import PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
-from app.methods.inputs import INPUTS, refuse_infinite
+from app.methods.inputs import INPUTS
 from app.methods.model import Context, Fact, Method, Picture, Progress, Size, Source
 from app.methods.output.pictures import crops, encode, log_modulus
-from app.methods.params import WHOLE_IN_MEMORY, StillParams
+from app.methods.params import WHOLE_IN_MEMORY, Resolved, StillParams
 from app.synthesis.arrays import Real
 from app.synthesis.fourier.periodic import periodic_component
 from app.synthesis.fourier.spot import centre
@@ -21,10 +21,11 @@ from app.synthesis.gaussian.rayleigh import rayleigh
 from app.synthesis.gaussian.rpn import rpn
 
 
-def check(sizes: Sequence[Size], params: StillParams) -> None:
+def check(sizes: Sequence[Size], resolved: Resolved[StillParams]) -> None:
     """Refuse a size beyond the crop's."""
-    for name, asked, most in (("width", params.width, sizes[0].width), ("height", params.height, sizes[0].height)):
-        if asked and asked > most:
+    size = sizes[0]
+    for name, asked, most in (("width", resolved.width, size.width), ("height", resolved.height, size.height)):
+        if asked > most:
             raise InvalidInputError(
                 f"The phase of the crop is kept, so the {name} can be at most the crop's own, {most} pixels, and "
                 f"{asked} is asked for: take a larger crop, or a smaller {name}.",
@@ -32,16 +33,13 @@ def check(sizes: Sequence[Size], params: StillParams) -> None:
             )
 
 
-def run(sources: Sequence[Source], params: StillParams, context: Context) -> Iterator[Picture]:
+def run(sources: Sequence[Source], resolved: Resolved[StillParams], context: Context) -> Iterator[Picture]:
     """The crop under the noise; then its random phase noise, without and with the same noise."""
     source = sources[0]
-    check([source.size], params)
-    refuse_infinite(sources)
     h, peak = source.pixels, source.peak
-    height, width = params.height or h.shape[0], params.width or h.shape[1]
-
+    seed, height, width = resolved.params.seed, resolved.height, resolved.width
     progress = context.between(0, 0.25)
-    z = rayleigh(h, height, width, seed=params.seed, threads=context.threads, progress=progress)
+    z = rayleigh(h, height, width, seed=seed, threads=context.threads, progress=progress)
     context.progress("periodic", 0.25)
     p = periodic_component(centre(h, height, width), context.threads)
     context.progress("correlation", 0.3)
@@ -55,7 +53,7 @@ def run(sources: Sequence[Source], params: StillParams, context: Context) -> Ite
         ("adsn", adsn, "The same with Rayleigh noise: ADSN", 0.6),
     ):
         progress = _as_one_stage(name, context.between(begin, begin + 0.25))
-        texture = model(h, height, width, seed=params.seed, threads=context.threads, progress=progress)
+        texture = model(h, height, width, seed=seed, threads=context.threads, progress=progress)
         yield encode(name, title, texture, peak, context, kind="texture")
     for name, title, image, done in (
         ("input-spectrum", "Log-modulus of the periodic component", p, 0.9),

@@ -10,10 +10,10 @@ from app.methods.announced import Announced, shown_inputs, texture, views
 from app.methods.explanations.references import PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
 from app.methods.explanations.references import TEXTON as TEXTON_ARTICLE
 from app.methods.explanations.texton import EXPLANATION
-from app.methods.inputs import INPUTS, refuse_infinite
-from app.methods.model import Context, Fact, Method, Picture, Size, Source
+from app.methods.inputs import INPUTS
+from app.methods.model import Context, Fact, Method, Picture, Source
 from app.methods.output.pictures import crops, encode
-from app.methods.params import WHOLE_IN_MEMORY, StillParams
+from app.methods.params import WHOLE_IN_MEMORY, Resolved, StillParams
 from app.numbers import FAR
 from app.synthesis.arrays import Real
 from app.synthesis.elementary import log10
@@ -41,15 +41,10 @@ class TextonParams(StillParams):
     )
 
 
-def check(sizes: Sequence[Size], params: TextonParams) -> None:
-    """Nothing is refused: a cut that is larger than the texton cuts nothing."""
-
-
-def run(sources: Sequence[Source], params: TextonParams, context: Context) -> Iterator[Picture]:
+def run(sources: Sequence[Source], resolved: Resolved[TextonParams], context: Context) -> Iterator[Picture]:
     """The texture, the crop, and the texton that the one was made of and the other holds."""
     source = sources[0]
-    refuse_infinite(sources)
-    height, width = params.height or source.pixels.shape[0], params.width or source.pixels.shape[1]
+    params, height, width = resolved.params, resolved.height, resolved.width
     context.progress("texton", 0.0)
     h = centre(source.pixels, height, width)
     parts, gains = _parts(h, height, width, params.cut, context)
@@ -151,7 +146,6 @@ TEXTON = Method(
     params=TextonParams,
     references=(TEXTON_ARTICLE, RANDOM_PHASE_TEXTURES, PERIODIC_PLUS_SMOOTH),
     explanation=EXPLANATION,
-    check=check,
     run=run,
     outputs=(texture(), *shown_inputs(), *views("texton", "texton-log", of=()), *views("spot"), NOISES),
     most_pixels=WHOLE_IN_MEMORY,

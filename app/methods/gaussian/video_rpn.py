@@ -13,7 +13,7 @@ from app.methods.gaussian.params import SpotParams, not_extended
 from app.methods.model import Context, Fact, Method, Picture, Progress, Size, Slot, Source
 from app.methods.output.films import crop_film, film_memory, texture_film
 from app.methods.output.pictures import encode, log_modulus
-from app.methods.params import MovingParams
+from app.methods.params import MovingParams, Resolved
 from app.synthesis.arrays import Real
 from app.synthesis.gaussian.video_rpn import VideoNoiseField
 from app.synthesis.parallel import Team
@@ -26,14 +26,10 @@ class VideoRpnParams(SpotParams, MovingParams):
     """Parameters of random phase noise in three dimensions."""
 
 
-def check(sizes: Sequence[Size], params: VideoRpnParams) -> None:
-    """Nothing is refused: any clip has a spectrum."""
-
-
-def memory(sizes: Sequence[Size], params: VideoRpnParams) -> int:
+def memory(sizes: Sequence[Size], resolved: Resolved[VideoRpnParams]) -> int:
     """The clip, its half spectrum, that of the texture where the two differ, some frames, and the encoders."""
     clip = sizes[0]
-    frames, height, width = shape = _shape(clip, params)
+    frames, height, width = shape = resolved.shape
     inside = min(frames, clip.frames), min(height, clip.height), min(width, clip.width)
     needed = clip.channels * clip.frames * clip.height * clip.width + _spectrum_bytes(inside, clip.channels)
     if inside != shape:
@@ -48,16 +44,11 @@ def _spectrum_bytes(shape: tuple[int, int, int], channels: int) -> int:
     return channels * frames * height * (width // 2 + 1) * np.dtype(np.complex64).itemsize
 
 
-def _shape(clip: Size, params: VideoRpnParams) -> tuple[int, int, int]:
-    return params.frames or clip.frames, params.height or clip.height, params.width or clip.width
-
-
-def run(sources: Sequence[Source], params: VideoRpnParams, context: Context) -> Iterator[Picture]:
+def run(sources: Sequence[Source], resolved: Resolved[VideoRpnParams], context: Context) -> Iterator[Picture]:
     """The texture's files, then what was measured on the way, then the crop's."""
     source = sources[0]
-    assert source.film is not None
-    film = source.film.frames
-    shape = _shape(source.size, params)
+    film, rate = source.clip.frames, source.clip.rate
+    params, shape = resolved.params, resolved.shape
     with Team(context.threads) as team:
         field = VideoNoiseField(
             film,
@@ -74,7 +65,7 @@ def run(sources: Sequence[Source], params: VideoRpnParams, context: Context) -> 
             height=shape[1],
             channels=film.shape[3],
             count=shape[0],
-            rate=source.film.rate,
+            rate=rate,
             context=replace(context, progress=context.between(0.6, 0.7)),
         )
     yield from _views(film, field, context)
@@ -109,7 +100,6 @@ VIDEO_RPN = Method(
     params=VideoRpnParams,
     references=(RANDOM_PHASE_TEXTURES, GAUSSIAN_MIXING, IPOL_RPN, PERIODIC_PLUS_SMOOTH),
     explanation=EXPLANATION,
-    check=check,
     run=run,
     outputs=(*FILMS, *views("average", of=()), *views("spectrum", "spectrum-in-time", deep=False), *SHOWN_CLIP),
     idle=not_extended,

@@ -71,8 +71,7 @@ def texture_film(
 
 def crop_film(source: Source, context: Context) -> Iterator[Picture]:
     """Write a moving input: ``crop`` (WebM), ``crop-mp4`` and ``crop-cube``; the stage is ``crop``, from 0 to 1."""
-    assert source.film is not None
-    frames, rate = source.film.frames, source.film.rate
+    frames, rate = source.clip.frames, source.clip.rate
     count, height, width, channels = frames.shape
     size = width, height, channels, count
     cube = VideoCube(*size)

@@ -8,7 +8,7 @@ from pydantic import Field
 
 from app.errors import InvalidInputError
 from app.methods.model import Size
-from app.methods.params import ADVANCED, StillParams
+from app.methods.params import ADVANCED, Resolved
 from app.synthesis.patchwork.cell_match import HALF
 from app.synthesis.patchwork.cell_shapes import reach as near_reach
 from app.synthesis.patchwork.cells import LEFT_OUT, SLACK
@@ -50,9 +50,9 @@ def summed(params: Joining) -> bool:
     return params.reach == "all" and not _idle(params)
 
 
-def idle_reach(sizes: Sequence[Size], params: Joining) -> Mapping[str, str]:
+def idle_reach(sizes: Sequence[Size], resolved: Resolved[Any]) -> Mapping[str, str]:
     """Say of the reach that it is idle where far patches are not seen."""
-    words = _idle(params)
+    words = _idle(resolved.params)
     return {"reach": words} if words else {}
 
 
@@ -177,7 +177,7 @@ def pattern_size(sizes: Sequence[Size]) -> tuple[int, int]:
     return sizes[1].width, sizes[1].height
 
 
-def refuse_other_size(pattern: Size, params: StillParams) -> None:
+def refuse_other_size(pattern: Size, resolved: Resolved[Any]) -> None:
     """Refuse a width or a height that is not the pattern's.
 
     Raises
@@ -185,8 +185,8 @@ def refuse_other_size(pattern: Size, params: StillParams) -> None:
     InvalidInputError
         At ``parameters.width`` or ``parameters.height``.
     """
-    for name, asked, own in (("width", params.width, pattern.width), ("height", params.height, pattern.height)):
-        if asked and asked != own:
+    for name, asked, own in (("width", resolved.width, pattern.width), ("height", resolved.height, pattern.height)):
+        if asked != own:
             raise InvalidInputError(
                 f"A transfer is as large as its pattern, {pattern.width} × {pattern.height} pixels, and a {name} of "
                 f"{asked} is asked for: leave width and height empty, or crop a larger or smaller pattern.",

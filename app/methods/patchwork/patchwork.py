@@ -11,10 +11,10 @@ from app.images.png_writer import PngWriter
 from app.methods.announced import shown_inputs, texture, views
 from app.methods.explanations.patchwork import EXPLANATION
 from app.methods.explanations.references import PATCHWORK as REPORT
-from app.methods.inputs import INPUTS, refuse_infinite
+from app.methods.inputs import INPUTS
 from app.methods.model import Context, Fact, Method, Picture, Progress, Size, Source
 from app.methods.output.pictures import coordinate_colours, crops, encode
-from app.methods.params import ADVANCED, StillParams
+from app.methods.params import ADVANCED, Resolved, StillParams
 from app.methods.patchwork.limits import (
     BYTES_OF_CELL,
     LEAST_GRID,
@@ -74,31 +74,27 @@ class PatchworkParams(StillParams):
     )
 
 
-def check(sizes: Sequence[Size], params: PatchworkParams) -> None:
+def check(sizes: Sequence[Size], resolved: Resolved[PatchworkParams]) -> None:
     """Refuse a crop that does not hold every cell with its blend zone, whatever the seed."""
-    size = sizes[0]
-    width, height = params.width or size.width, params.height or size.height
+    size, params, width, height = sizes[0], resolved.params, resolved.width, resolved.height
     refuse_small(size, params.grid, lambda grid: (least_sample(height, width, grid, params.sharpness),) * 2)
     refuse_long_sum(params, height, width, tileable=params.tileable)
 
 
-def memory(sizes: Sequence[Size], params: PatchworkParams) -> int:
+def memory(sizes: Sequence[Size], resolved: Resolved[PatchworkParams]) -> int:
     """The crop three times over with its margin, the cells, their weights, what is in work, and the file."""
-    size = sizes[0]
-    width, height = params.width or size.width, params.height or size.height
+    size, params, width, height = sizes[0], resolved.params, resolved.width, resolved.height
     joined = Reached(params, height, width, params.tileable)
     crop = 8 * size.channels * size.width * size.height + joined.sample_bytes(size, size.channels)
     cells = BYTES_OF_CELL * (height // params.grid + 8) * (width // params.grid + 8) + joined.table_bytes
     return crop + cells + BANDS * BAND * 4 * (size.channels + 6) * (width + TILE) + 2 * size.channels * width * height
 
 
-def run(sources: Sequence[Source], params: PatchworkParams, context: Context) -> Iterator[Picture]:
+def run(sources: Sequence[Source], resolved: Resolved[PatchworkParams], context: Context) -> Iterator[Picture]:
     """The texture; then its cells, and where in the crop their sources lie."""
     source = sources[0]
-    check([source.size], params)
-    refuse_infinite(sources)
     h = source.pixels
-    height, width = params.height or h.shape[0], params.width or h.shape[1]
+    params, height, width = resolved.params, resolved.height, resolved.width
     context.progress("cells", 0.0)
     cells = jittered_cells(
         height, width, grid=params.grid, sharpness=params.sharpness, tileable=params.tileable, seed=params.seed

@@ -86,7 +86,6 @@ def textured(
         The clip, whose rate and channels are the texture's.
     context : Context
     """
-    assert source.film is not None
     frames, height, width = shape
     made = frames_in_order(frame, frames, context.threads, lambda part: context.progress("frames", 0.02 + 0.76 * part))
     yield from texture_film(
@@ -95,7 +94,7 @@ def textured(
         height=height,
         channels=source.size.channels,
         count=frames,
-        rate=source.film.rate,
+        rate=source.clip.rate,
         context=replace(context, progress=context.between(0.78, 0.86)),
     )
 

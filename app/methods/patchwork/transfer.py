@@ -8,10 +8,10 @@ from pydantic import Field
 from app.methods.announced import shown_inputs, texture, views
 from app.methods.explanations.references import PATCHWORK
 from app.methods.explanations.transfer import EXPLANATION
-from app.methods.inputs import alike, refuse_infinite
+from app.methods.inputs import alike
 from app.methods.model import Context, Method, Picture, Size, Slot, Source
 from app.methods.output.pictures import coordinate_colours, crops, encode
-from app.methods.params import WHOLE_IN_MEMORY, StillParams
+from app.methods.params import WHOLE_IN_MEMORY, Resolved, StillParams
 from app.methods.patchwork.limits import (
     BYTES_OF_CELL,
     LEAST_GRID,
@@ -70,19 +70,20 @@ class TransferParams(StillParams):
     reach: Reach = reach("near")
 
 
-def check(sizes: Sequence[Size], params: TransferParams) -> None:
+def check(sizes: Sequence[Size], resolved: Resolved[TransferParams]) -> None:
     """Refuse another size than the pattern's, a texture that does not hold the patches, and too long a search."""
     texture, pattern = sizes
-    refuse_other_size(pattern, params)
-    height, width = pattern.height, pattern.width
+    refuse_other_size(pattern, resolved)
+    params, height, width = resolved.params, resolved.height, resolved.width
     refuse_small(texture, params.grid, lambda grid: (least_sample(height, width, grid, params.sharpness),) * 2)
     refuse_long_search(texture, pattern, params.grid, params.candidates)
     refuse_long_sum(params, height, width, tileable=False)
 
 
-def memory(sizes: Sequence[Size], params: TransferParams) -> int:
+def memory(sizes: Sequence[Size], resolved: Resolved[TransferParams]) -> int:
     """Both pictures, the search and the result."""
     texture, pattern = sizes
+    params = resolved.params
     channels, grid = max(texture.channels, pattern.channels), params.grid
     cells = (pattern.width // grid + 8) * (pattern.height // grid + 8)
     joined = Reached(params, pattern.height, pattern.width, tileable=False)
@@ -91,10 +92,9 @@ def memory(sizes: Sequence[Size], params: TransferParams) -> int:
     return held + rendered + BYTES_OF_CELL * cells
 
 
-def run(sources: Sequence[Source], params: TransferParams, context: Context) -> Iterator[Picture]:
+def run(sources: Sequence[Source], resolved: Resolved[TransferParams], context: Context) -> Iterator[Picture]:
     """The pattern in the texture, where its patches come from, their averages, and what they were compared with."""
-    check([source.size for source in sources], params)
-    refuse_infinite(sources)
+    params = resolved.params
     texture, pattern = alike(sources)
     peak = sources[0].peak
     context.progress("cells", 0.0)

@@ -13,7 +13,7 @@ from app.methods.explanations.references import PATCHWORK
 from app.methods.explanations.video_patchwork import EXPLANATION
 from app.methods.model import Context, Method, Picture, Size, Slot, Source
 from app.methods.output.films import crop_film
-from app.methods.params import SeamlessParams
+from app.methods.params import Resolved, SeamlessParams
 from app.methods.patchwork.limits import (
     LEAST_GRID,
     Reached,
@@ -68,9 +68,9 @@ class VideoPatchworkParams(SeamlessParams):
     reach: Reach = reach("all")
 
 
-def check(sizes: Sequence[Size], params: VideoPatchworkParams) -> None:
+def check(sizes: Sequence[Size], resolved: Resolved[VideoPatchworkParams]) -> None:
     """Refuse a crop or a clip that does not hold the patches."""
-    size, (frames, height, width) = sizes[0], _shape(sizes[0], params)
+    size, params, (frames, height, width) = sizes[0], resolved.params, resolved.shape
     if params.arrangement == "mosaic":
         refuse_small(size, params.grid, lambda grid: (least_length(width, grid), least_length(height, grid)))
         most = next(interval for interval in range(frames, 0, -1) if least_length(frames, interval) <= size.frames)
@@ -86,20 +86,18 @@ def check(sizes: Sequence[Size], params: VideoPatchworkParams) -> None:
         refuse_long_frames(work, height, width, frames)
 
 
-def memory(sizes: Sequence[Size], params: VideoPatchworkParams) -> int:
+def memory(sizes: Sequence[Size], resolved: Resolved[VideoPatchworkParams]) -> int:
     """The clip, as it came and as planes, the weights of the cells, and some frames."""
-    size, (_, height, width) = sizes[0], _shape(sizes[0], params)
+    size, params, height, width = sizes[0], resolved.params, resolved.height, resolved.width
     if params.arrangement == "fixed":
         return patchwork_bytes(size, Reached(params, height, width, params.tileable))
     return 2 * film_bytes(size) + tile_bytes(height, width) + frames_bytes(size, height, width)
 
 
-def run(sources: Sequence[Source], params: VideoPatchworkParams, context: Context) -> Iterator[Picture]:
+def run(sources: Sequence[Source], resolved: Resolved[VideoPatchworkParams], context: Context) -> Iterator[Picture]:
     """The video texture, its cells over time, the average image, and the crop."""
     (source,) = sources
-    check([source.size], params)
-    assert source.film is not None
-    film, shape = source.film.frames, _shape(source.size, params)
+    params, film, shape = resolved.params, source.clip.frames, resolved.shape
     context.progress("cells", 0)
     frame, painter = (_mosaic if params.arrangement == "mosaic" else _fixed)(film, shape, params)
     yield from textured(frame, shape, source, context)
@@ -107,10 +105,6 @@ def run(sources: Sequence[Source], params: VideoPatchworkParams, context: Contex
     yield average_picture(film.mean(0, np.float32), context)
     yield from crop_film(source, replace(context, progress=context.between(0.9, 1)))
     context.progress("crop", 1)
-
-
-def _shape(size: Size, params: VideoPatchworkParams) -> tuple[int, int, int]:
-    return params.frames or size.frames, params.height or size.height, params.width or size.width
 
 
 def _fixed(

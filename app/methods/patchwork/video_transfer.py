@@ -10,11 +10,10 @@ from pydantic import Field
 from app.methods.announced import FILMS, SHOWN_CLIP, views
 from app.methods.explanations.references import PATCHWORK
 from app.methods.explanations.video_transfer import EXPLANATION
-from app.methods.inputs import refuse_infinite
 from app.methods.model import Context, Method, Picture, Size, Slot, Source
 from app.methods.output.films import crop_film
 from app.methods.output.pictures import encode
-from app.methods.params import LoopParams
+from app.methods.params import LoopParams, Resolved
 from app.methods.patchwork.limits import (
     LEAST_GRID,
     RESCALE,
@@ -79,11 +78,11 @@ class VideoTransferParams(LoopParams):
     reach: Reach = reach("near")
 
 
-def check(sizes: Sequence[Size], params: VideoTransferParams) -> None:
+def check(sizes: Sequence[Size], resolved: Resolved[VideoTransferParams]) -> None:
     """Refuse a size that is not the pattern's, and a clip that does not hold the patches."""
     clip, pattern = sizes
-    refuse_other_size(pattern, params)
-    frames, height, width = _shape(sizes, params)
+    refuse_other_size(pattern, resolved)
+    params, (frames, height, width) = resolved.params, resolved.shape
     refuse_small(clip, params.grid, lambda grid: (least_sample(height, width, grid, params.sharpness),) * 2)
     refuse_short(clip, frames, params.interval, longest_interval(clip.frames, frames, params.loop))
     refuse_long_search(clip, pattern, params.grid, params.candidates)
@@ -93,21 +92,17 @@ def check(sizes: Sequence[Size], params: VideoTransferParams) -> None:
         )
 
 
-def memory(sizes: Sequence[Size], params: VideoTransferParams) -> int:
+def memory(sizes: Sequence[Size], resolved: Resolved[VideoTransferParams]) -> int:
     """That of the video patchwork, and the search."""
     clip, pattern = sizes
-    joined = Reached(params, pattern.height, pattern.width, tileable=False)
+    joined = Reached(resolved.params, pattern.height, pattern.width, tileable=False)
     return patchwork_bytes(clip, joined) + search_bytes(replace(clip, frames=1), pattern)
 
 
-def run(sources: Sequence[Source], params: VideoTransferParams, context: Context) -> Iterator[Picture]:
+def run(sources: Sequence[Source], resolved: Resolved[VideoTransferParams], context: Context) -> Iterator[Picture]:
     """The pattern as a video texture, its cells over time, the average image, the clip and the pattern."""
     clip, pattern = sources
-    sizes = [source.size for source in sources]
-    check(sizes, params)
-    refuse_infinite(sources)
-    assert clip.film is not None
-    film, shape = clip.film.frames, _shape(sizes, params)
+    params, film, shape = resolved.params, clip.clip.frames, resolved.shape
     context.progress("cells", 0)
     cells = jittered_cells(*shape[1:], grid=params.grid, sharpness=params.sharpness, tileable=False, seed=params.seed)
     average = film.mean(0, np.float32)
@@ -156,10 +151,6 @@ def _with_channels(pixels: Real, channels: int) -> Real:
     if pixels.shape[2] == channels:
         return pixels
     return luminance(pixels)[:, :, None] if channels == 1 else np.repeat(pixels, channels, axis=2)
-
-
-def _shape(sizes: Sequence[Size], params: VideoTransferParams) -> tuple[int, int, int]:
-    return params.frames or sizes[0].frames, sizes[1].height, sizes[1].width
 
 
 VIDEO_TRANSFER = Method(

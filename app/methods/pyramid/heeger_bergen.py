@@ -11,10 +11,10 @@ from app.methods.announced import Announced, shown_inputs, texture, views
 from app.methods.explanations.heeger_bergen import EXPLANATION
 from app.methods.explanations.references import HEEGER_BERGEN as ARTICLE
 from app.methods.explanations.references import IPOL_HEEGER_BERGEN, PERIODIC_PLUS_SMOOTH, STEERABLE_PYRAMID
-from app.methods.inputs import INPUTS, refuse_infinite, refuse_other_size
+from app.methods.inputs import INPUTS, refuse_other_size
 from app.methods.model import Context, Fact, Method, Picture, Size, Source
 from app.methods.output.pictures import crops, encode
-from app.methods.params import ADD_SMOOTH, ADVANCED, StillParams
+from app.methods.params import ADD_SMOOTH, ADVANCED, Resolved, StillParams
 from app.methods.pyramid.sub_bands import mosaic
 from app.synthesis.arrays import Real
 from app.synthesis.fourier.periodic import smooth_planes
@@ -64,10 +64,10 @@ class HeegerBergenParams(StillParams):
     add_smooth: bool = ADD_SMOOTH
 
 
-def check(sizes: Sequence[Size], params: HeegerBergenParams) -> None:
+def check(sizes: Sequence[Size], resolved: Resolved[HeegerBergenParams]) -> None:
     """Refuse more scales than fit, and a smooth component that there is none of or that does not fit."""
     size = sizes[0]
-    width, height = params.width or size.width, params.height or size.height
+    params, width, height = resolved.params, resolved.width, resolved.height
     for what, sides in (("crop", (size.width, size.height)), ("texture", (width, height))):
         if min(sides) < 2**params.scales:
             fitting = min(sides).bit_length() - 1
@@ -84,7 +84,7 @@ def check(sizes: Sequence[Size], params: HeegerBergenParams) -> None:
             "parameters.add_smooth",
         )
     if params.add_smooth:
-        refuse_other_size(size, width, height)
+        refuse_other_size(size, resolved)
 
 
 def _refuse_too_large(size: Size, pixels: int, params: HeegerBergenParams) -> None:
@@ -98,13 +98,10 @@ def _refuse_too_large(size: Size, pixels: int, params: HeegerBergenParams) -> No
         )
 
 
-def run(sources: Sequence[Source], params: HeegerBergenParams, context: Context) -> Iterator[Picture]:
+def run(sources: Sequence[Source], resolved: Resolved[HeegerBergenParams], context: Context) -> Iterator[Picture]:
     """The texture, how it came about, and the sub-bands of sample and texture."""
     source = sources[0]
-    height, width, _ = source.pixels.shape
-    check([source.size], params)
-    refuse_infinite(sources)
-    height, width = params.height or height, params.width or width
+    params, height, width = resolved.params, resolved.height, resolved.width
     context.progress("sample", 0.0)
     decomposition = Decomposition(params.scales, params.orientations, params.edges)
     pyramid = SteerablePyramid(height, width, params.scales, params.orientations)

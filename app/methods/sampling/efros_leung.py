@@ -11,10 +11,10 @@ from app.methods.announced import shown_inputs, texture, views
 from app.methods.explanations.efros_leung import EXPLANATION
 from app.methods.explanations.references import EFROS_LEUNG as EFROS_LEUNG_ARTICLE
 from app.methods.explanations.references import IPOL_EFROS_LEUNG
-from app.methods.inputs import INPUTS, refuse_infinite
+from app.methods.inputs import INPUTS
 from app.methods.model import Context, Fact, Method, Picture, Progress, Size, Source
 from app.methods.output.pictures import coordinate_colours, crops, encode
-from app.methods.params import StillParams
+from app.methods.params import Resolved, StillParams
 from app.synthesis.sampling.efros_leung import border_share, efros_leung, verbatim_share
 
 HALF_PATCH = 4
@@ -59,8 +59,9 @@ def default_size(sizes: Sequence[Size]) -> tuple[int, int]:
     return max(1, int(size.width * factor)), max(1, int(size.height * factor))
 
 
-def check(sizes: Sequence[Size], params: EfrosLeungParams) -> None:
+def check(sizes: Sequence[Size], resolved: Resolved[EfrosLeungParams]) -> None:
     """Refuse a crop that holds no window, or more than the search can hold; and what would take too long."""
+    params, width, height = resolved.params, resolved.width, resolved.height
     size, side = sizes[0], 2 * params.half_patch + 1
     if min(size.width, size.height) < side:
         raise InvalidInputError(
@@ -77,8 +78,6 @@ def check(sizes: Sequence[Size], params: EfrosLeungParams) -> None:
             "(96 × 96 is usual).",
             "inputs.0.crop",
         )
-    default = default_size(sizes)
-    width, height = params.width or default[0], params.height or default[1]
     if width * height * positions * products > MOST_WORK:
         texture = isqrt(MOST_WORK // (positions * products))
         crop = isqrt(MOST_WORK // (width * height * products))
@@ -91,18 +90,15 @@ def check(sizes: Sequence[Size], params: EfrosLeungParams) -> None:
         )
 
 
-def run(sources: Sequence[Source], params: EfrosLeungParams, context: Context) -> Iterator[Picture]:
+def run(sources: Sequence[Source], resolved: Resolved[EfrosLeungParams], context: Context) -> Iterator[Picture]:
     """The texture; then where its pixels come from, and when they came."""
     source = sources[0]
     h, peak = source.pixels, source.peak
-    size = sources[0].size
-    check([size], params)
-    refuse_infinite(sources)
-    width, height = default_size([size])
+    size, params = source.size, resolved.params
     grown = efros_leung(
         h,
-        params.height or height,
-        params.width or width,
+        resolved.height,
+        resolved.width,
         half_patch=params.half_patch,
         tolerance=params.tolerance,
         seed=params.seed,

@@ -18,7 +18,7 @@ def run(name="dsn", *, channels=3, depth=8, **parameters):
     pixels = rng.integers(0, 80, (60, 70, 1)) + rng.integers(40, 120, (60, 70, channels))
     method, context = METHODS[name], Context(depth, 2, lambda stage, fraction: None)
     params = method.params(seed=3, **parameters)
-    return {made.name: made for made in method.run([Source(pixels.astype(np.float32), 255)], params, context)}
+    return {made.name: made for made in method.pictures([Source(pixels.astype(np.float32), 255)], params, context)}
 
 
 def pixels(picture):
@@ -34,13 +34,13 @@ def test_values_outside_what_is_declared_are_refused(wrong):
 @pytest.mark.parametrize("spot", ["disc", "gaussian"])
 def test_a_shape_that_does_not_fit_is_refused_with_words_that_help(spot):
     with pytest.raises(InvalidInputError, match="at least 61 pixels") as refusal:
-        DSN.check([Size(200, 60, 3)], DSN.params(spot=spot, radius=30))
+        DSN.resolve([Size(200, 60, 3)], DSN.params(spot=spot, radius=30))
     assert refusal.value.field == "parameters.radius"
-    DSN.check([Size(200, 60, 3)], DSN.params(spot=spot, radius=30, height=61))
+    DSN.resolve([Size(200, 60, 3)], DSN.params(spot=spot, radius=30, height=61))
 
 
 def test_the_radius_is_not_looked_at_when_the_crop_is_the_spot():
-    DSN.check([Size(10, 10, 3)], DSN.params(radius=30))
+    DSN.resolve([Size(10, 10, 3)], DSN.params(radius=30))
 
 
 @pytest.mark.parametrize("size", [{}, {"width": 100, "height": 91}, {"width": 40}])

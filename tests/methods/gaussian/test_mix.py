@@ -20,7 +20,7 @@ def crop(height=40, width=50, channels=3, peak=255, seed=0):
 
 def run(sources, name="mix", depth=8, **parameters):
     method = METHODS[name]
-    pictures = method.run(sources, method.params(**parameters), Context(depth, 2, lambda stage, fraction: None))
+    pictures = method.pictures(sources, method.params(**parameters), Context(depth, 2, lambda stage, fraction: None))
     return {picture.name: picture for picture in pictures}
 
 
@@ -43,7 +43,7 @@ def sizes(count):
 )  # fmt: skip
 def test_only_the_proportions_of_the_weights_count(weights, shares):
     params = MixParams(weights=weights)
-    MIX.check(sizes(2), params)
+    MIX.resolve(sizes(2), params)
     assert params.shares(2) == pytest.approx(shares)
 
 
@@ -65,13 +65,13 @@ def test_weights_that_are_none_are_refused(weights):
 @pytest.mark.parametrize(("count", "weights"), [(2, "1"), (2, "1,2,3"), (3, "1,2"), (4, "1,1,1")])
 def test_one_weight_for_each_sample_is_asked_for_with_words_that_help(count, weights):
     with pytest.raises(InvalidInputError, match=f"There are {count} samples") as refusal:
-        MIX.check(sizes(count), MixParams(weights=weights))
+        MIX.resolve(sizes(count), MixParams(weights=weights))
     assert refusal.value.field == "parameters.weights"
 
 
 def test_a_path_of_one_step_is_refused():
     with pytest.raises(InvalidInputError, match="two ends") as refusal:
-        MIX.check(sizes(2), MixParams(strip=1))
+        MIX.resolve(sizes(2), MixParams(strip=1))
     assert refusal.value.field == "parameters.strip"
 
 

@@ -18,7 +18,7 @@ def crop(height=40, width=50, channels=3, peak=255, seed=0):
 
 def run(sources, depth=8, **parameters):
     context = Context(depth, 2, lambda stage, fraction: None)
-    return {made.name: made for made in MODULUS_PHASE.run(sources, MODULUS_PHASE.params(**parameters), context)}
+    return {made.name: made for made in MODULUS_PHASE.pictures(sources, MODULUS_PHASE.params(**parameters), context)}
 
 
 def pixels(picture):
@@ -60,7 +60,7 @@ def test_the_common_size_is_the_smaller_of_each_side_and_the_centre_is_taken():
 @pytest.mark.parametrize(("asked", "field"), [({"width": 51}, "width"), ({"height": 41, "width": 50}, "height")])
 def test_a_size_beyond_either_crop_is_refused_with_words_that_help(asked, field):
     with pytest.raises(InvalidInputError, match="take larger crops") as refusal:
-        MODULUS_PHASE.check([Size(50, 90, 3), Size(70, 40, 3)], MODULUS_PHASE.params(**asked))
+        MODULUS_PHASE.resolve([Size(50, 90, 3), Size(70, 40, 3)], MODULUS_PHASE.params(**asked))
     assert refusal.value.field == f"parameters.{field}"
 
 

@@ -31,7 +31,7 @@ def crop(height=40, width=50, channels=3, peak=255, seed=0):
 
 def pictures(name, source, *, depth=8, threads=2, progress=lambda stage, fraction: None, **parameters):
     entry = method(name)
-    run = entry.run([source], entry.params(**parameters), Context(depth, threads, progress))
+    run = entry.pictures([source], entry.params(**parameters), Context(depth, threads, progress))
     return {picture.name: picture for picture in run}
 
 
@@ -69,7 +69,7 @@ def test_values_outside_what_is_declared_are_refused(wrong):
 def test_the_smooth_component_at_another_size_is_refused_with_words_that_help(name, size):
     entry = METHODS[name]
     with pytest.raises(InvalidInputError, match="own size, 50 × 40") as refusal:
-        entry.check([Size(50, 40, 3)], entry.params(add_smooth=True, **size))
+        entry.resolve([Size(50, 40, 3)], entry.params(add_smooth=True, **size))
     assert refusal.value.field == "parameters.add_smooth"
 
 
@@ -77,14 +77,14 @@ def test_the_smooth_component_at_another_size_is_refused_with_words_that_help(na
 def test_the_smooth_component_that_was_not_taken_out_cannot_be_added(name):
     entry = METHODS[name]
     with pytest.raises(InvalidInputError, match="turn “Periodic component” on") as refusal:
-        entry.check([Size(50, 40, 3)], entry.params(add_smooth=True, periodic=False))
+        entry.resolve([Size(50, 40, 3)], entry.params(add_smooth=True, periodic=False))
     assert refusal.value.field == "parameters.add_smooth"
 
 
 @BOTH
 @pytest.mark.parametrize("size", [{}, {"width": 50, "height": 40}, {"width": 50}])
 def test_the_smooth_component_at_the_crops_size_is_fine(name, size):
-    METHODS[name].check([Size(50, 40, 3)], METHODS[name].params(add_smooth=True, **size))
+    METHODS[name].resolve([Size(50, 40, 3)], METHODS[name].params(add_smooth=True, **size))
 
 
 @BOTH
@@ -110,7 +110,7 @@ def test_it_gives_every_step_as_a_picture(name, channels, height, width):
 
 def test_the_pictures_are_made_one_by_one_the_texture_first():
     entry, stages = method("rpn"), []
-    run = entry.run([crop()], entry.params(), Context(8, 1, lambda stage, fraction: stages.append(stage)))
+    run = entry.pictures([crop()], entry.params(), Context(8, 1, lambda stage, fraction: stages.append(stage)))
     assert stages == []
     assert next(run).name == "texture"
     assert "output-spectrum" not in stages

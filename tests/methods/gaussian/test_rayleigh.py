@@ -15,7 +15,9 @@ def run(name, seed=3, **size):
     pixels = (rng.integers(0, 80, (60, 70, 1)) + rng.integers(40, 120, (60, 70, 3))).astype(np.float32)
     context = Context(8, 2, lambda stage, fraction: None)
     method = METHODS[name]
-    return {made.name: made for made in method.run([Source(pixels, 255)], method.params(seed=seed, **size), context)}
+    return {
+        made.name: made for made in method.pictures([Source(pixels, 255)], method.params(seed=seed, **size), context)
+    }
 
 
 def test_it_gives_every_step_as_a_picture():
@@ -42,7 +44,7 @@ def test_it_measures_the_correlation_which_is_near_half_the_root_of_pi():
 
 def test_a_constant_crop_has_nothing_that_the_noise_could_damage():
     constant = Source(np.full((8, 9, 3), [0, 77, 255], np.float32), 255)
-    texture = next(iter(RAYLEIGH.run([constant], RAYLEIGH.params(), Context(8, 1, lambda stage, fraction: None))))
+    texture = next(iter(RAYLEIGH.pictures([constant], RAYLEIGH.params(), Context(8, 1, lambda stage, fraction: None))))
     assert (png_decode(texture.data) == [0, 77, 255]).all()
     assert texture.facts[0].value == 1
 
@@ -50,12 +52,12 @@ def test_a_constant_crop_has_nothing_that_the_noise_could_damage():
 @pytest.mark.parametrize(("asked", "field"), [({"width": 71}, "width"), ({"height": 61, "width": 20}, "height")])
 def test_a_size_beyond_the_crops_is_refused_with_words_that_help(asked, field):
     with pytest.raises(InvalidInputError, match="larger crop") as refusal:
-        RAYLEIGH.check([Size(70, 60, 3)], RAYLEIGH.params(**asked))
+        RAYLEIGH.resolve([Size(70, 60, 3)], RAYLEIGH.params(**asked))
     assert refusal.value.field == f"parameters.{field}"
 
 
 def test_a_smaller_size_takes_the_centre():
-    RAYLEIGH.check([Size(70, 60, 3)], RAYLEIGH.params(width=40, height=30))
+    RAYLEIGH.resolve([Size(70, 60, 3)], RAYLEIGH.params(width=40, height=30))
     made = run("rayleigh", width=40, height=31)
     assert png_decode(made["texture"].data).shape == png_decode(made["periodic"].data).shape == (31, 40, 3)
     assert png_decode(made["crop"].data).shape == (60, 70, 3)

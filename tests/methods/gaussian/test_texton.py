@@ -18,7 +18,7 @@ PIXELS = (RNG.integers(0, 80, (60, 70, 1)) + RNG.integers(40, 120, (60, 70, 3)))
 def run(name="texton", *, source=PIXELS, seed=3, **parameters):
     method, context = METHODS[name], Context(8, 2, lambda stage, fraction: None)
     params = method.params(seed=seed, **parameters)
-    return {made.name: made for made in method.run([Source(source, 255)], params, context)}
+    return {made.name: made for made in method.pictures([Source(source, 255)], params, context)}
 
 
 def pixels(picture):

@@ -22,7 +22,7 @@ def clip(frames=6, height=40, width=48, channels=3, still=False):
 
 def run(source, scratch, threads=2, **parameters):
     context = Context(8, threads, lambda stage, fraction: None, scratch)
-    return {made.name: made for made in VIDEO_RPN.run([source], VIDEO_RPN.params(**parameters), context)}
+    return {made.name: made for made in VIDEO_RPN.pictures([source], VIDEO_RPN.params(**parameters), context)}
 
 
 def test_it_gives_the_videos_files_its_views_and_the_crop(tmp_path):
@@ -93,15 +93,15 @@ def test_the_memory_that_it_declares_is_what_it_takes_at_most_and_not_far_above(
         tracemalloc.stop()
     params = VIDEO_RPN.params(frames=texture[0], height=texture[1], width=texture[2])
     width, height = max(film[2], texture[2]), max(film[1], texture[1])
-    declared = VIDEO_RPN.memory([Size(film[2], film[1], film[3], film[0])], params)
+    declared = VIDEO_RPN.memory_of([Size(film[2], film[1], film[3], film[0])], params)
     assert 0.4 < peak / (declared - film_memory(width, height, film[3])) < 1
 
 
 def test_the_memory_of_the_clips_own_size_is_that_of_no_size_asked_for():
     size = Size(64, 48, 3, 10)
     asked = VIDEO_RPN.params(width=64, height=48, frames=10)
-    assert VIDEO_RPN.memory([size], VIDEO_RPN.params()) == VIDEO_RPN.memory([size], asked)
-    assert VIDEO_RPN.memory([size], VIDEO_RPN.params(frames=20)) > VIDEO_RPN.memory([size], asked)
+    assert VIDEO_RPN.memory_of([size], VIDEO_RPN.params()) == VIDEO_RPN.memory_of([size], asked)
+    assert VIDEO_RPN.memory_of([size], VIDEO_RPN.params(frames=20)) > VIDEO_RPN.memory_of([size], asked)
 
 
 def test_there_is_no_switch_for_what_it_does_by_nature():

@@ -7,11 +7,11 @@ from imagecodecs import png_decode
 from app.errors import InvalidInputError
 from app.methods.model import Size
 from app.methods.patchwork.patchwork import PATCHWORK
-from tests.methods.runs import a_crop, run
+from tests.methods.runs import a_crop, run_small
 
 
 def made(**parameters):
-    return {picture.name: picture for picture in run(PATCHWORK, [a_crop(96, 110)], grid=16, seed=2, **parameters)}
+    return {picture.name: picture for picture in run_small(PATCHWORK, [a_crop(96, 110)], grid=16, seed=2, **parameters)}
 
 
 def test_it_gives_the_texture_its_cells_and_where_their_sources_lie():
@@ -43,22 +43,22 @@ def test_a_crop_too_small_for_the_grid_is_refused_with_the_largest_grid_that_fit
     size = [Size(256, 200, 3)]
     asked = {"sharpness": sharpness, "width": 512, "height": 512}
     with pytest.raises(InvalidInputError, match="grid of at most") as refusal:
-        PATCHWORK.check(size, PATCHWORK.params(grid=100, **asked))
+        PATCHWORK.resolve(size, PATCHWORK.params(grid=100, **asked))
     assert refusal.value.field == "parameters.grid"
     largest = int(refusal.value.message.split("at most ")[1].split(",")[0])
-    PATCHWORK.check(size, PATCHWORK.params(grid=largest, **asked))
+    PATCHWORK.resolve(size, PATCHWORK.params(grid=largest, **asked))
     with pytest.raises(InvalidInputError):
-        PATCHWORK.check(size, PATCHWORK.params(grid=largest + 1, **asked))
+        PATCHWORK.resolve(size, PATCHWORK.params(grid=largest + 1, **asked))
 
 
 def test_a_crop_too_small_for_any_grid_is_refused():
     with pytest.raises(InvalidInputError, match="take a larger crop"):
-        PATCHWORK.check([Size(9, 300, 3)], PATCHWORK.params())
+        PATCHWORK.resolve([Size(9, 300, 3)], PATCHWORK.params())
 
 
 def test_the_usual_parameters_fit_a_crop_of_256():
     for side in (*range(1, 400), 4096):
-        PATCHWORK.check([Size(256, 256, 3)], PATCHWORK.params(width=side, height=side))
+        PATCHWORK.resolve([Size(256, 256, 3)], PATCHWORK.params(width=side, height=side))
 
 
 def test_it_tiles_where_it_is_asked_to():
@@ -68,5 +68,5 @@ def test_it_tiles_where_it_is_asked_to():
 
 def test_the_memory_does_not_hold_the_texture_as_floats():
     """4096² in colour from 512² would be 201 MB as floats; rows go to the file as they are made."""
-    needed = PATCHWORK.memory([Size(512, 512, 3)], PATCHWORK.params(width=4096, height=4096))
+    needed = PATCHWORK.memory_of([Size(512, 512, 3)], PATCHWORK.params(width=4096, height=4096))
     assert 100e6 < needed < 300e6

@@ -16,14 +16,14 @@ from app.methods.patchwork.transfer import TRANSFER
 from app.methods.patchwork.video_patchwork import VIDEO_PATCHWORK
 from app.methods.patchwork.video_transfer import VIDEO_TRANSFER
 from app.methods.registry import METHODS
-from tests.methods.runs import SMALL, a_clip, a_crop, run, sources_for
+from tests.methods.runs import SMALL, a_clip, a_crop, run_small, sources_for
 
 JOINING = [PATCHWORK, TRANSFER, VIDEO_PATCHWORK, VIDEO_TRANSFER]
 MOSAIC = {"arrangement": "mosaic"}
 
 
 def texture(method: Method, scratch, **parameters) -> np.ndarray:
-    made: Picture = next(run(method, sources_for(method, height=60, width=70), scratch=scratch, **parameters))
+    made: Picture = next(run_small(method, sources_for(method, height=60, width=70), scratch=scratch, **parameters))
     if isinstance(made.data, bytes):
         return png_decode(made.data).astype(float)
     return np.stack(list(read_video(made.data))).astype(float)
@@ -60,11 +60,11 @@ def test_it_changes_the_texture_below_a_sharpness_of_six_and_nothing_from_there_
 )
 def test_a_sum_that_would_take_too_long_is_refused_with_what_helps(method, sizes, parameters):
     with pytest.raises(InvalidInputError, match="too long") as refusal:
-        method.check(sizes, method.params(**parameters, reach="all"))
+        method.resolve(sizes, method.params(**parameters, reach="all"))
     assert refusal.value.field == "parameters.reach"
     assert "reach: near" in refusal.value.message
-    method.check(sizes, method.params(**parameters, reach="near"))
-    method.check(sizes, method.params(**parameters | {"sharpness": 6}, reach="all"))
+    method.resolve(sizes, method.params(**parameters, reach="near"))
+    method.resolve(sizes, method.params(**parameters | {"sharpness": 6}, reach="all"))
 
 
 @pytest.mark.parametrize(
@@ -79,12 +79,12 @@ def test_a_sum_that_would_take_too_long_is_refused_with_what_helps(method, sizes
 )
 @pytest.mark.parametrize("sharpness", [2, 3, 6])
 def test_usual_sizes_are_not_refused(method, sizes, sharpness):
-    method.check(sizes, method.params(sharpness=sharpness, reach="all"))
+    method.resolve(sizes, method.params(sharpness=sharpness, reach="all"))
 
 
 def test_a_sharp_join_needs_the_nearest_patch_alone():
     sizes = [Size(512, 512, 3)]
-    PATCHWORK.check(sizes, PATCHWORK.params(width=4096, height=4096, sharpness=2, blend="sharp"))
+    PATCHWORK.resolve(sizes, PATCHWORK.params(width=4096, height=4096, sharpness=2, blend="sharp"))
 
 
 @pytest.mark.parametrize("method", [PATCHWORK, TRANSFER], ids=lambda method: method.name)
@@ -95,10 +95,10 @@ def test_the_memory_it_asks_for_covers_what_all_patches_take(method, tileable, t
     parameters = {**SMALL[method.name], "sharpness": 1, "reach": "all", "width": 220, "height": 200}
     if method is PATCHWORK:
         parameters["tileable"] = tileable
-    asked = method.memory([source.size for source in sources], method.params(**parameters))
+    asked = method.memory_of([source.size for source in sources], method.params(**parameters))
     tracemalloc.start()
     try:
-        for _ in run(method, sources, scratch=tmp_path, **parameters):
+        for _ in run_small(method, sources, scratch=tmp_path, **parameters):
             pass
         peak = tracemalloc.get_traced_memory()[1]
     finally:
@@ -111,17 +111,17 @@ def test_the_memory_grows_with_what_is_held_around_the_sample(method):
     moving = method in (VIDEO_PATCHWORK, VIDEO_TRANSFER)
     size = Size(320, 320, 3, 72 if moving else 1)
     sizes = [size, replace(size, frames=1)][: len(method.inputs)]
-    near, every = (method.memory(sizes, method.params(sharpness=2, reach=reach)) for reach in ("near", "all"))
+    near, every = (method.memory_of(sizes, method.params(sharpness=2, reach=reach)) for reach in ("near", "all"))
     assert every != near
     assert every > 0
 
 
 def test_pictures_of_one_pixel_and_clips_of_few_frames_can_be_summed(tmp_path):
     for width, height in ((1, 1), (1, 40), (40, 1)):
-        made = next(run(PATCHWORK, [a_crop(60, 60)], width=width, height=height, sharpness=1, reach="all"))
+        made = next(run_small(PATCHWORK, [a_crop(60, 60)], width=width, height=height, sharpness=1, reach="all"))
         assert png_decode(made.data).shape[:2] == (height, width)
     film = next(
-        run(
+        run_small(
             VIDEO_PATCHWORK,
             [a_clip(60, 60)],
             scratch=tmp_path,
@@ -139,10 +139,10 @@ def test_pictures_of_one_pixel_and_clips_of_few_frames_can_be_summed(tmp_path):
 def test_a_reach_that_changes_nothing_is_idle_and_sums_nothing(method):
     """From a sharpness of 6 on, and beside sharp joins; below it counts."""
     sizes = [source.size for source in sources_for(method)]
-    assert not method.idle(sizes, method.params(sharpness=5.9))
+    assert not method.idle(sizes, method.fill(sizes, method.params(sharpness=5.9)))
     cases = [{"sharpness": 6}, *([{"sharpness": 2, "blend": "sharp"}] if method is PATCHWORK else [])]
     for parameters in cases:
         params = method.params(**parameters, reach="all")
-        assert list(method.idle(sizes, params)) == ["reach"]
+        assert list(method.idle(sizes, method.fill(sizes, params))) == ["reach"]
         assert not summed(params)
     assert summed(method.params(sharpness=5.9, reach="all"))

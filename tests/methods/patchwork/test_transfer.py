@@ -7,11 +7,12 @@ from imagecodecs import png_decode
 from app.errors import InvalidInputError
 from app.methods.model import Size, Source
 from app.methods.patchwork.transfer import TRANSFER, TransferParams
-from tests.methods.runs import a_crop, run
+from tests.methods.runs import a_crop, run_small
 
 
 def made_of(texture, pattern, **parameters):
-    return {made.name: made for made in run(TRANSFER, [texture, pattern], **{"grid": 8, "candidates": 20} | parameters)}
+    given = {"grid": 8, "candidates": 20} | parameters
+    return {made.name: made for made in run_small(TRANSFER, [texture, pattern], **given)}
 
 
 def facts_of(*sources, **parameters):
@@ -69,7 +70,7 @@ def test_inputs_of_eight_and_of_sixteen_bits_go_together():
 def test_its_size_is_the_patterns():
     sizes = [Size(200, 300, 3), Size(90, 80, 1)]
     assert TRANSFER.size(sizes) == (90, 80)
-    TRANSFER.check(sizes, TransferParams(width=90, height=80))
+    TRANSFER.resolve(sizes, TransferParams(width=90, height=80))
 
 
 @pytest.mark.parametrize(
@@ -85,21 +86,21 @@ def test_its_size_is_the_patterns():
 )
 def test_what_cannot_run_is_refused_with_words_that_help(sizes, parameters, field, words):
     with pytest.raises(InvalidInputError, match=words) as refusal:
-        TRANSFER.check(sizes, TransferParams(**parameters))
+        TRANSFER.resolve(sizes, TransferParams(**parameters))
     assert refusal.value.field == f"parameters.{field}"
 
 
 def test_the_grid_that_is_named_fits():
     sizes = [Size(60, 300, 3), Size(90, 80, 1)]
     with pytest.raises(InvalidInputError) as refusal:
-        TRANSFER.check(sizes, TransferParams())
+        TRANSFER.resolve(sizes, TransferParams())
     largest = int(refusal.value.message.split("at most ")[1].split(",")[0])
-    TRANSFER.check(sizes, TransferParams(grid=largest))
+    TRANSFER.resolve(sizes, TransferParams(grid=largest))
     with pytest.raises(InvalidInputError):
-        TRANSFER.check(sizes, TransferParams(grid=largest + 1))
+        TRANSFER.resolve(sizes, TransferParams(grid=largest + 1))
 
 
 def test_the_largest_pictures_run_with_what_is_proposed():
     """The defaults pass the check of time at the size of four kilopixels squared."""
-    TRANSFER.check([Size(4096, 4096, 3)] * 2, TransferParams())
-    assert TRANSFER.memory([Size(512, 512, 3)] * 2, TransferParams()) < 1 << 28
+    TRANSFER.resolve([Size(4096, 4096, 3)] * 2, TransferParams())
+    assert TRANSFER.memory_of([Size(512, 512, 3)] * 2, TransferParams()) < 1 << 28

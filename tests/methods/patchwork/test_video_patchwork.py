@@ -12,7 +12,7 @@ from app.images.video.reader import read_video
 from app.methods.model import Film, Size
 from app.methods.output.films import film_memory
 from app.methods.patchwork.video_patchwork import VIDEO_PATCHWORK
-from tests.methods.runs import a_clip, run
+from tests.methods.runs import a_clip, run_small
 
 ARRANGED = pytest.mark.parametrize("arrangement", ["fixed", "mosaic"])
 
@@ -25,7 +25,7 @@ def a_still_clip():
 
 
 def texture(source, scratch, **parameters):
-    made = next(run(VIDEO_PATCHWORK, [source], scratch=scratch, **parameters))
+    made = next(run_small(VIDEO_PATCHWORK, [source], scratch=scratch, **parameters))
     assert isinstance(made.data, Path)
     return np.stack(list(read_video(made.data)))
 
@@ -40,7 +40,7 @@ def test_only_the_fixed_arrangement_leaves_a_still_clip_still(tmp_path):
 @ARRANGED
 def test_its_views_are_the_cells_over_time_and_the_average_image(arrangement, tmp_path):
     interval = {"fixed": 4, "mosaic": 3}[arrangement]
-    made = run(VIDEO_PATCHWORK, [a_clip()], scratch=tmp_path, arrangement=arrangement, interval=interval)
+    made = run_small(VIDEO_PATCHWORK, [a_clip()], scratch=tmp_path, arrangement=arrangement, interval=interval)
     pictures = {picture.name: picture for picture in made}
     assert list(pictures)[3:] == ["cube", "cells", "average", "crop", "crop-mp4", "crop-cube"]
     assert (pictures["cells"].width, pictures["cells"].height) == (pictures["cube"].width, pictures["cube"].height)
@@ -51,12 +51,12 @@ def test_its_views_are_the_cells_over_time_and_the_average_image(arrangement, tm
 def test_a_crop_that_is_too_small_is_refused_with_the_largest_grid_that_fits(arrangement):
     sizes, asked = [Size(100, 90, 3, 72)], {"width": 300, "height": 200, "frames": 72, "arrangement": arrangement}
     with pytest.raises(InvalidInputError, match="a grid of at most") as refusal:
-        VIDEO_PATCHWORK.check(sizes, VIDEO_PATCHWORK.params(**asked))
+        VIDEO_PATCHWORK.resolve(sizes, VIDEO_PATCHWORK.params(**asked))
     assert refusal.value.field == "parameters.grid"
     largest = int(refusal.value.message.split("at most ")[1].split(",")[0])
-    VIDEO_PATCHWORK.check(sizes, VIDEO_PATCHWORK.params(grid=largest, **asked))
+    VIDEO_PATCHWORK.resolve(sizes, VIDEO_PATCHWORK.params(grid=largest, **asked))
     with pytest.raises(InvalidInputError):
-        VIDEO_PATCHWORK.check(sizes, VIDEO_PATCHWORK.params(grid=largest + 1, **asked))
+        VIDEO_PATCHWORK.resolve(sizes, VIDEO_PATCHWORK.params(grid=largest + 1, **asked))
 
 
 @ARRANGED
@@ -64,17 +64,17 @@ def test_a_crop_that_is_too_small_is_refused_with_the_largest_grid_that_fits(arr
 def test_a_clip_that_is_too_short_is_refused_with_the_longest_interval_that_fits(arrangement, loop):
     sizes, asked = [Size(400, 400, 3, 24)], {"frames": 100, "arrangement": arrangement, "loop": loop}
     with pytest.raises(InvalidInputError, match="an interval of at most") as refusal:
-        VIDEO_PATCHWORK.check(sizes, VIDEO_PATCHWORK.params(**asked))
+        VIDEO_PATCHWORK.resolve(sizes, VIDEO_PATCHWORK.params(**asked))
     assert refusal.value.field == "parameters.interval"
     longest = int(refusal.value.message.split("at most ")[1].split(",")[0])
-    VIDEO_PATCHWORK.check(sizes, VIDEO_PATCHWORK.params(interval=longest, **asked))
+    VIDEO_PATCHWORK.resolve(sizes, VIDEO_PATCHWORK.params(interval=longest, **asked))
     with pytest.raises(InvalidInputError):
-        VIDEO_PATCHWORK.check(sizes, VIDEO_PATCHWORK.params(interval=longest + 1, **asked))
+        VIDEO_PATCHWORK.resolve(sizes, VIDEO_PATCHWORK.params(interval=longest + 1, **asked))
 
 
 @ARRANGED
 def test_its_defaults_suit_a_clip_of_three_seconds(arrangement):
-    VIDEO_PATCHWORK.check([Size(256, 256, 3, 72)], VIDEO_PATCHWORK.params(arrangement=arrangement))
+    VIDEO_PATCHWORK.resolve([Size(256, 256, 3, 72)], VIDEO_PATCHWORK.params(arrangement=arrangement))
 
 
 @ARRANGED
@@ -85,10 +85,10 @@ def test_the_memory_it_asks_for_covers_what_it_takes(arrangement, sharpness, tmp
     source = a_clip(height=150, width=160, frames=24)
     params = {"width": 200, "height": 220, "frames": 4, "grid": 20, "interval": 6, "arrangement": arrangement}
     params["sharpness"] = sharpness
-    asked = VIDEO_PATCHWORK.memory([source.size], VIDEO_PATCHWORK.params(**params)) - film_memory(200, 220, 3)
+    asked = VIDEO_PATCHWORK.memory_of([source.size], VIDEO_PATCHWORK.params(**params)) - film_memory(200, 220, 3)
     tracemalloc.start()
     try:
-        assert next(run(VIDEO_PATCHWORK, [source], scratch=tmp_path, **params)).name == "cells"
+        assert next(run_small(VIDEO_PATCHWORK, [source], scratch=tmp_path, **params)).name == "cells"
         peak = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()

@@ -11,11 +11,11 @@ from app.images.video.reader import read_video
 from app.methods.model import Film, Size, Source
 from app.methods.patchwork.transfer import TRANSFER
 from app.methods.patchwork.video_transfer import VIDEO_TRANSFER
-from tests.methods.runs import a_clip, a_crop, run
+from tests.methods.runs import a_clip, a_crop, run_small
 
 
 def texture(sources, scratch, **parameters):
-    made = next(run(VIDEO_TRANSFER, sources, scratch=scratch, **parameters))
+    made = next(run_small(VIDEO_TRANSFER, sources, scratch=scratch, **parameters))
     assert isinstance(made.data, Path)
     return np.stack(list(read_video(made.data)))
 
@@ -39,7 +39,7 @@ def test_light_and_dark_are_where_the_pattern_has_them_in_every_frame(tmp_path):
 
 
 def test_what_the_picture_shows_besides(tmp_path):
-    pictures = {made.name: made for made in run(VIDEO_TRANSFER, [a_clip(), a_crop(50, 40)], scratch=tmp_path)}
+    pictures = {made.name: made for made in run_small(VIDEO_TRANSFER, [a_clip(), a_crop(50, 40)], scratch=tmp_path)}
     views = ["cube", "cells", "average", "pattern", "crop", "crop-mp4", "crop-cube", "crop-2"]
     assert list(pictures) == ["texture", "texture-mp4", "preview", *views]
     assert (png_decode(pictures["crop-2"].data) == a_crop(50, 40).pixels).all()
@@ -55,7 +55,9 @@ def test_the_patterns_colours_are_rescaled_unless_that_is_switched_off(tmp_path)
     for rescale in (True, False):
         made = {
             picture.name: picture
-            for picture in run(VIDEO_TRANSFER, [halves(), pattern], scratch=tmp_path, candidates=0, rescale=rescale)
+            for picture in run_small(
+                VIDEO_TRANSFER, [halves(), pattern], scratch=tmp_path, candidates=0, rescale=rescale
+            )
         }
         film = np.stack(list(read_video(made["texture"].data))).astype(float)
         means[rescale] = film[:, :14].mean(), film[:, 26:].mean()
@@ -88,14 +90,14 @@ def test_a_clip_in_grey_makes_grey_and_one_in_colour_takes_a_grey_pattern(clip, 
 
 def test_another_size_than_the_patterns_is_refused():
     with pytest.raises(InvalidInputError, match="as large as its pattern") as refusal:
-        VIDEO_TRANSFER.check([Size(320, 320, 3, 72), Size(100, 80, 3)], VIDEO_TRANSFER.params(width=100, height=90))
+        VIDEO_TRANSFER.resolve([Size(320, 320, 3, 72), Size(100, 80, 3)], VIDEO_TRANSFER.params(width=100, height=90))
     assert refusal.value.field == "parameters.height"
 
 
 def test_a_clip_that_is_too_small_or_too_short_is_refused():
     for size, field in ((Size(40, 300, 3, 72), "grid"), (Size(300, 300, 3, 20), "interval")):
         with pytest.raises(InvalidInputError, match="at most") as refusal:
-            VIDEO_TRANSFER.check([size, Size(100, 80, 3)], VIDEO_TRANSFER.params(frames=72))
+            VIDEO_TRANSFER.resolve([size, Size(100, 80, 3)], VIDEO_TRANSFER.params(frames=72))
         assert refusal.value.field == f"parameters.{field}"
 
 

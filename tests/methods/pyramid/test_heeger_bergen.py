@@ -19,13 +19,15 @@ def crop(height=40, width=50, channels=3, seed=0):
 
 
 def pictures(source, **parameters):
-    run = HEEGER_BERGEN.run([source], HeegerBergenParams(**parameters), Context(8, 2, lambda stage, fraction: None))
+    run = HEEGER_BERGEN.pictures(
+        [source], HeegerBergenParams(**parameters), Context(8, 2, lambda stage, fraction: None)
+    )
     return {picture.name: picture for picture in run}
 
 
 def refusal(size, **parameters):
     with pytest.raises(InvalidInputError) as refused:
-        HEEGER_BERGEN.check([size], HeegerBergenParams(**parameters))
+        HEEGER_BERGEN.resolve([size], HeegerBergenParams(**parameters))
     return refused.value
 
 
@@ -51,7 +53,7 @@ def test_more_scales_than_fit_are_refused_with_how_many_do():
     assert "the texture has 500 × 15" in str(refusal(Size(50, 40, 3), width=500, height=15))
     assert "take a larger crop" in str(refusal(Size(1, 40, 3)))
     assert refusal(Size(50, 40, 3), scales=6).field == "parameters.scales"
-    HEEGER_BERGEN.check([Size(16, 40, 3)], HeegerBergenParams(width=16, height=16))
+    HEEGER_BERGEN.resolve([Size(16, 40, 3)], HeegerBergenParams(width=16, height=16))
 
 
 @pytest.mark.parametrize("wrong", [{"width": 51}, {"height": 80}, {"edges": "mirror"}])
@@ -60,7 +62,7 @@ def test_a_smooth_component_that_does_not_fit_or_does_not_exist_is_refused(wrong
 
 
 def test_the_smooth_component_makes_the_texture_one_that_does_not_tile():
-    HEEGER_BERGEN.check([Size(50, 40, 3)], HeegerBergenParams(add_smooth=True))
+    HEEGER_BERGEN.resolve([Size(50, 40, 3)], HeegerBergenParams(add_smooth=True))
     assert not HEEGER_BERGEN.toroidal(HeegerBergenParams(add_smooth=True))
     assert HEEGER_BERGEN.toroidal(HeegerBergenParams())
 
@@ -140,7 +142,7 @@ def test_the_facts_tell_the_shares_of_the_components_and_the_distance_that_is_le
 def test_what_would_not_fit_into_a_workers_memory_is_refused_beforehand(size, parameters, fits):
     """A worker that is killed for its memory tells nobody why."""
     if fits:
-        HEEGER_BERGEN.check([Size(*size)], HeegerBergenParams(**parameters))
+        HEEGER_BERGEN.resolve([Size(*size)], HeegerBergenParams(**parameters))
     else:
         with pytest.raises(InvalidInputError, match="smaller crop"):
-            HEEGER_BERGEN.check([Size(*size)], HeegerBergenParams(**parameters))
+            HEEGER_BERGEN.resolve([Size(*size)], HeegerBergenParams(**parameters))

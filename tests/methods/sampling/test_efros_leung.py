@@ -21,13 +21,15 @@ def crop(height=24, width=30, channels=3, peak=255):
 
 
 def pictures(source, *, depth=8, **parameters):
-    run = EFROS_LEUNG.run([source], EfrosLeungParams(**parameters), Context(depth, 2, lambda stage, fraction: None))
+    run = EFROS_LEUNG.pictures(
+        [source], EfrosLeungParams(**parameters), Context(depth, 2, lambda stage, fraction: None)
+    )
     return {picture.name: picture for picture in run}
 
 
 def refusal(size, **parameters):
     with pytest.raises(InvalidInputError) as refused:
-        EFROS_LEUNG.check([size], EfrosLeungParams(**parameters))
+        EFROS_LEUNG.resolve([size], EfrosLeungParams(**parameters))
     return refused.value
 
 
@@ -44,7 +46,7 @@ def test_values_outside_what_is_declared_are_refused(wrong):
 
 
 def test_a_crop_smaller_than_the_window_is_refused():
-    EFROS_LEUNG.check([Size(9, 30, 3)], EfrosLeungParams())
+    EFROS_LEUNG.resolve([Size(9, 30, 3)], EfrosLeungParams())
     refused = refusal(Size(8, 30, 3))
     assert "9 × 9" in refused.message
     assert "8 × 30" in refused.message
@@ -57,18 +59,18 @@ def test_the_sizes_that_a_refusal_names_are_accepted(size, half_patch):
     refused = refusal(size, width=4000, height=4000, half_patch=half_patch)
     assert refused.field == "parameters.width"
     texture = int(re.search(r"at most about (\d+) ×", refused.message)[1])
-    EFROS_LEUNG.check([size], EfrosLeungParams(width=texture, height=texture, half_patch=half_patch))
+    EFROS_LEUNG.resolve([size], EfrosLeungParams(width=texture, height=texture, half_patch=half_patch))
     wider = {"width": 2 * texture, "height": 2 * texture, "half_patch": half_patch}
     smaller = int(re.search(r"crop at most about (\d+) ×", refusal(size, **wider).message)[1])
     assert smaller < max(size.width, size.height)
-    EFROS_LEUNG.check([Size(smaller, smaller, size.channels)], EfrosLeungParams(**wider))
+    EFROS_LEUNG.resolve([Size(smaller, smaller, size.channels)], EfrosLeungParams(**wider))
 
 
 def test_a_crop_that_the_search_cannot_hold_is_refused_with_one_that_it_can():
     refused = refusal(Size(1024, 1024, 3), width=8, height=8)
     assert refused.field == "inputs.0.crop"
     most = int(re.search(r"it can be about (\d+) ×", refused.message)[1])
-    EFROS_LEUNG.check([Size(most, most, 3)], EfrosLeungParams(width=8, height=8))
+    EFROS_LEUNG.resolve([Size(most, most, 3)], EfrosLeungParams(width=8, height=8))
 
 
 @pytest.mark.parametrize("side", [9, 96, 128, 256, 320])
@@ -76,7 +78,7 @@ def test_a_crop_that_the_search_cannot_hold_is_refused_with_one_that_it_can():
 def test_the_size_by_default_is_the_crops_or_one_that_does_not_take_long(side, channels):
     size = Size(side, side, channels)
     width, height = EFROS_LEUNG.size([size])
-    EFROS_LEUNG.check([size], EfrosLeungParams(width=width, height=height))
+    EFROS_LEUNG.resolve([size], EfrosLeungParams(width=width, height=height))
     assert (width, height) == (side, side) if side <= 128 else 64 <= width == height <= side
     wide = EFROS_LEUNG.size([Size(300, 200, 3)])
     assert wide[0] / wide[1] == pytest.approx(1.5, rel=0.02)
@@ -121,7 +123,7 @@ def test_every_colour_of_a_16_bit_texture_is_one_of_the_crop():
 def test_the_progress_goes_through_all_stages_without_going_back():
     seen = []
     context = Context(8, 1, lambda stage, fraction: seen.append((fraction, stage)))
-    next(EFROS_LEUNG.run([crop()], EfrosLeungParams(width=90, height=60, half_patch=1), context))
+    next(EFROS_LEUNG.pictures([crop()], EfrosLeungParams(width=90, height=60, half_patch=1), context))
     fractions = [fraction for fraction, _ in seen]
     assert fractions == sorted(fractions)
     assert {"order", "patches", "growth"} == {stage for _, stage in seen}
