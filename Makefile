@@ -1,6 +1,7 @@
 # Everything a person or a machine does with this checkout. `make help` lists it.
 
 PYTHON ?= python3
+PYTHON_313 ?= python3.13
 PORT ?= 8000
 VENV := .venv
 BIN := $(VENV)/bin
@@ -10,11 +11,11 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check
 export PIP_NO_INPUT := 1
 
 .DEFAULT_GOAL := help
-.PHONY: help setup run dev check fix test lint lint-python lint-templates lint-js types test-js test-fast programs chaos load bench \
-	lock dist readme-picture clean
+.PHONY: help setup run dev check fix test lint lint-python lint-templates lint-js types test-js test-fast \
+	test-313 test-without-browser programs chaos load bench lock dist readme-picture clean
 
 help: ## list these targets
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-15s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "  make %-15s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 setup: $(VENV)/.ready ## build .venv with the locked dependencies and the command `microtexture`
 
@@ -41,6 +42,13 @@ else
 	$(WITH_BROWSER) $(BIN)/pytest -n 2 --dist loadfile -m 'acceptance and not (chaos or load)' tests
 	$(WITH_BROWSER) $(BIN)/pytest -m 'chaos and not load' tests
 endif
+
+test-313: ## the tests without a browser on Python 3.13, or on the one that PYTHON_313 names, in an environment of their own
+	@PYENV_VERSION=3.13 $(MAKE) --no-print-directory VENV=.venv-3.13 PYTHON=$(PYTHON_313) test-without-browser
+
+test-without-browser: programs
+	$(BIN)/pytest -n 2 --dist loadfile -m 'not (acceptance or chaos or load)'
+	$(BIN)/pytest -m 'chaos and not (acceptance or load)' tests
 
 test-fast: $(VENV)/.ready-dev
 	$(BIN)/pytest -q -n 2 --dist loadfile --hypothesis-profile=quick -m 'not (slow or acceptance or chaos or load)'
@@ -88,7 +96,7 @@ LOCK_OPTIONS = --quiet --no-config --universal --python-version 3.11 --generate-
 	--no-emit-index-url --custom-compile-command "make lock"
 
 clean: ## remove the environment and caches, not ./data
-	rm -rf $(VENV) node_modules build dist *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis .schemathesis
+	rm -rf $(VENV) .venv-3.13 node_modules build dist *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis .schemathesis
 
 $(BIN)/python:
 	@scripts/check-python "$(PYTHON)"
