@@ -44,7 +44,7 @@ ODD = [
 
 def sample(name: str) -> Sample:
     now = datetime(2026, 1, 1, tzinfo=UTC)
-    return Sample(name, "0" * 64, 48, 40, 3, 8, False, now, frames=SAMPLES[name], title=name, rate=10.0)
+    return Sample(48, 40, 3, 8, False, SAMPLES[name], 10.0, id=name, digest="0" * 64, created_at=now, title=name)
 
 
 def find(name: str) -> Sample:
@@ -82,7 +82,8 @@ def counts(name: str, values: Mapping[str, str]) -> bool:
     if head in METHODS:
         return head == declared.name
     if name in SHARED:
-        return name in declared.params.model_fields and (name not in ("width", "height") or values["size"] == "free")
+        asked = name in declared.params.model_fields and f"{declared.name}.{name}" not in values
+        return asked and (name not in ("width", "height") or values["size"] == "free")
     return True
 
 
