@@ -53,3 +53,25 @@ def test_every_make_target_that_the_documents_name_exists() -> None:
     for document in DOCUMENTS:
         named = set(re.findall(r"(?:^ {4}|`)make ([a-z0-9-]+)", document.read_text(encoding="utf-8"), re.MULTILINE))
         assert named <= targets, document.name
+
+
+DECISIONS = sorted((ROOT / "docs" / "decisions").glob("0*.md"))
+
+
+def test_every_decision_stands_in_the_index_with_its_title_and_date() -> None:
+    index = (ROOT / "docs" / "decisions" / "README.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| \[(\d+)\]\((.+?)\) \| (.+) \| (\d{4}-\d\d-\d\d) \|$", index, re.MULTILINE)
+    expected = []
+    for number, path in enumerate(DECISIONS, 1):
+        text = path.read_text(encoding="utf-8")
+        title = re.match(rf"# {number}\. (.+)\n", text)
+        date = re.search(r"^Date: (.+)$", text, re.MULTILINE)
+        assert title and date, path.name
+        expected.append((str(number), path.name, title[1], date[1]))
+    assert rows == expected
+
+
+@pytest.mark.parametrize("decision", DECISIONS, ids=lambda path: path.stem)
+def test_a_decision_tells_its_context_what_was_decided_and_what_follows(decision: Path) -> None:
+    headings = re.findall(r"^## (.+)$", decision.read_text(encoding="utf-8"), re.MULTILINE)
+    assert headings == ["Context", "Decision", "Consequences"]
