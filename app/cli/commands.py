@@ -120,7 +120,7 @@ def prune(
 
         service = build_service(read_settings())
         try:
-            pruned = service.prune(age)
+            pruned = service.housekeeping.prune(age)
         finally:
             service.close()
     typer.echo(f"Removed {pruned.experiments} experiments, {pruned.samples} samples and {pruned.files} files.")
@@ -147,7 +147,7 @@ def catalogue(
         service = build_service(settings)
         try:
             service.start()
-            filled = service.catalogue.fill(Event(), again=again, at_once=settings.workers, told=told)
+            filled = service.exhibition.fill(Event(), again=again, at_once=settings.workers, told=told)
         finally:
             service.close()
     typer.echo(f"Made {filled.made} figures, {filled.failed} failed, {filled.kept} were there already.")

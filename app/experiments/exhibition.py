@@ -10,7 +10,7 @@ from app.errors import AppError, DeletedError, NotFoundError
 from app.experiments.model import Experiment, Status
 from app.experiments.ports import Executor, ExperimentStore
 from app.experiments.preparation import NewExperiment, NewInput, prepare
-from app.experiments.samples import SampleIntake
+from app.experiments.samples import Samples
 from app.gallery.exhibits import exhibits
 from app.gallery.identity import identifier
 from app.images.crop import Rectangle
@@ -48,21 +48,21 @@ def _silent(number: int, of: int, exhibit: Exhibit, error: str | None) -> None:
     pass
 
 
-class Catalogue:
+class Exhibition:
     """Makes exhibits and finds them.
 
     Parameters
     ----------
-    store, executor, intake
+    store, executor, samples
         Those of the service.
     settings : Settings
         ``catalogue`` says whether what is missing is made in the background.
     """
 
-    def __init__(self, store: ExperimentStore, executor: Executor, intake: SampleIntake, settings: Settings) -> None:
+    def __init__(self, store: ExperimentStore, executor: Executor, samples: Samples, settings: Settings) -> None:
         self._store = store
         self._executor = executor
-        self._intake = intake
+        self._samples = samples
         self._settings = settings
         self._samples_are_in = threading.Event()
         self.making = settings.catalogue
@@ -71,7 +71,7 @@ class Catalogue:
     def keep(self, closing: threading.Event) -> None:
         """Bring the bundled samples in and then, where the settings want it, make what is missing, one at a time."""
         try:
-            self._intake.add_bundled(closing)
+            self._samples.add_bundled(closing)
         finally:
             self._samples_are_in.set()
         if self._settings.catalogue:
@@ -119,14 +119,14 @@ class Catalogue:
         return Filled(number - failed, failed, len(declared) - len(wanted), len(every) - len(declared))
 
     def find(self, exhibit: Exhibit) -> Experiment | None:
-        """The experiment of an exhibit, in whatever state; None if it was not begun, or deleted by the operator."""
+        """Find the experiment of an exhibit, in any state; None if it was not started, or deleted by the operator."""
         try:
             return self._store.get(identifier(exhibit))
         except (NotFoundError, DeletedError):
             return None
 
-    def prepared(self, exhibit: Exhibit) -> Experiment:
-        """The experiment that an exhibit asks for, not begun.
+    def prepare(self, exhibit: Exhibit) -> Experiment:
+        """Prepare the experiment that an exhibit asks for, without starting it.
 
         Raises
         ------
@@ -140,7 +140,7 @@ class Catalogue:
             NewExperiment(exhibit.method, inputs, exhibit.parameters, listed=False),
             OWNER,
             sample=self._store.sample,
-            transparent=self._intake.transparent,
+            transparent=self._samples.has_transparency,
             allowed=Allowed.by(self._settings),
         )
         return replace(experiment, id=identifier(exhibit))
@@ -155,7 +155,7 @@ class Catalogue:
 
     def _begin(self, exhibit: Exhibit) -> None:
         try:
-            experiment = self.prepared(exhibit)
+            experiment = self.prepare(exhibit)
             self._store.replace(experiment)
         except AppError as error:
             log.error("an exhibit of %s cannot be made: %s", exhibit.method, error.message)

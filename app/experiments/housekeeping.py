@@ -1,4 +1,4 @@
-"""What goes, and when: an experiment with all that only it referred to, and what lies about unused."""
+"""Housekeeping: deletes experiments together with files only they use, and once an hour removes orphaned files."""
 
 import logging
 import threading

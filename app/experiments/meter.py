@@ -11,7 +11,7 @@ from app.images.read import read_crop
 from app.images.stored_video import locate_crop
 from app.synthesis.arrays import Real
 from app.synthesis.luminance import luminance
-from app.synthesis.structure import LEAST, Structure, is_too_small, structure_index
+from app.synthesis.structure import LEAST, SIGMA, Structure, is_too_small, structure_index
 
 Verdict = Literal["micro-texture", "borderline", "structured", "unknown"]
 
@@ -79,8 +79,8 @@ class Meter:
         self._measured = lru_cache(KEPT)(self._measure)
         self._photograph = lru_cache(PHOTOGRAPHS)(self._read)
 
-    def structure(self, sample: Sample, crop: Rectangle | None, sigma: float, frame: int = 0) -> Index:
-        """The structure index of a crop, of all of the sample if None; of a large one, its centre 1024 × 1024 pixels.
+    def structure(self, sample: Sample, crop: Rectangle | None = None, sigma: float = SIGMA, frame: int = 0) -> Index:
+        """Measure a crop, all of the sample if None; of a large one, its centre 1024 × 1024 pixels.
 
         Of a video it is that of one frame.
 

@@ -1,4 +1,4 @@
-"""Uploaded and bundled photographs: from a file somebody gave to a sample."""
+"""Samples: takes in uploaded and bundled pictures and videos, each decoded and stored once, and finds them again."""
 
 import logging
 import threading
@@ -8,19 +8,19 @@ from pathlib import Path
 from app.errors import AppError
 from app.experiments.model import Sample
 from app.experiments.ports import BlobStore, ExperimentStore
-from app.experiments.tokens import new_identifier
+from app.experiments.tokens import new_identifier, token_digest
 from app.images.crop import Frames, Rectangle
 from app.images.decode import Limits
 from app.images.intake.client import server, take_in
 from app.images.stored_video import frames_have_transparency
-from app.samples import bundled
+from app.samples import bundled as bundled_files
 from app.settings import Settings
 
 log = logging.getLogger(__name__)
 
 
-class SampleIntake:
-    """Keeps photographs: each is decoded and stored once, in a process that can be killed."""
+class Samples:
+    """Uploaded and bundled samples; files are decoded in a process that can be killed."""
 
     def __init__(self, store: ExperimentStore, blobs: BlobStore, settings: Settings) -> None:
         self._store = store
@@ -29,21 +29,27 @@ class SampleIntake:
         self._limits = Limits.from_settings(settings)
 
     def add(self, upload: Path, owner: str | None) -> Sample:
-        """A new sample of this file; ``owner`` is the digest of a token.
+        """Make a sample of an uploaded file, which is gone afterwards, whatever comes of it; ``owner`` is a token.
 
-        Raises
-        ------
-        UnsupportedFormatError, BrokenFileError, TooLargeError
-            As `app.images.intake.client` finds.
-        BusyError
-            If too many others are being decoded.
+        Raises `UnsupportedFormatError`, `BrokenFileError`, `TooLargeError`, or `BusyError` if too many are decoded.
         """
-        return self._add(upload, new_identifier(), owner, title=None)
+        try:
+            return self._add(upload, new_identifier(), None if owner is None else token_digest(owner), title=None)
+        finally:
+            upload.unlink(missing_ok=True)
+
+    def get(self, sample_id: str) -> Sample:
+        """Read one. Raises `NotFoundError`."""
+        return self._store.sample(sample_id)
+
+    def bundled(self) -> list[Sample]:
+        """List the bundled ones that have come in so far, in the order of the catalogue."""
+        return self._store.bundled_samples()
 
     def add_bundled(self, closing: threading.Event) -> None:
-        """Keep the bundled photographs that are not kept yet, until told to stop."""
+        """Take in the bundled samples that are not stored yet, until ``closing`` is set."""
         known = {sample.id for sample in self._store.bundled_samples()}
-        for entry in bundled(self._directory):
+        for entry in bundled_files(self._directory):
             if closing.is_set():
                 return
             if entry.id in known:
@@ -51,7 +57,7 @@ class SampleIntake:
             try:
                 self._add(entry.path, entry.id, None, title=entry.title)
             except AppError as error:
-                log.error("the bundled photograph %s cannot be used: %s", entry.path, error)
+                log.error("the bundled sample %s cannot be used: %s", entry.path, error)
 
     def open(self) -> None:
         """Start the process that decodes, so that the first upload need not wait for it."""
@@ -61,7 +67,7 @@ class SampleIntake:
         """End the process that decodes."""
         server.stop()
 
-    def transparent(self, sample: Sample, crop: Rectangle, frames: Frames) -> bool:
+    def has_transparency(self, sample: Sample, crop: Rectangle, frames: Frames) -> bool:
         """Whether the crop holds pixels that are not opaque."""
         return frames_have_transparency(self._blobs.path(sample.digest), crop, frames, sample.height)
 

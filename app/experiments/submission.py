@@ -1,12 +1,13 @@
-"""The desk at which experiments are handed in: what can run is accepted, everything else gets its reason at once."""
+"""Submission of experiments: accepts or rejects them; a rejection names the field at fault."""
 
 from dataclasses import dataclass, replace
 
-from app.errors import BusyError, ConflictError, DeletedError, NotFoundError
+from app.errors import ConflictError, DeletedError, NotFoundError
 from app.experiments.model import Experiment
 from app.experiments.ports import Executor, ExperimentStore
 from app.experiments.preparation import NewExperiment, memory_of, prepare
-from app.experiments.samples import SampleIntake
+from app.experiments.queue import check_queue
+from app.experiments.samples import Samples
 from app.experiments.tokens import derived_identifier, new_identifier, new_token, token_digest
 from app.methods.allowed import Allowed
 from app.settings import Settings
@@ -26,25 +27,25 @@ class Plan:
     memory_limit: int
 
 
-class Acceptance:
+class Submission:
     """Accepts experiments.
 
     Parameters
     ----------
-    store, executor, intake
+    store, executor, samples
         Those of the service.
     settings : Settings
     """
 
-    def __init__(self, store: ExperimentStore, executor: Executor, intake: SampleIntake, settings: Settings) -> None:
+    def __init__(self, store: ExperimentStore, executor: Executor, samples: Samples, settings: Settings) -> None:
         self._store = store
         self._executor = executor
-        self._intake = intake
+        self._samples = samples
         self._allowed = Allowed.by(settings)
         self._queue_limit = settings.queue_limit
 
     def check(self, request: NewExperiment) -> Plan:
-        """What this would make and take. Raises as `submit` does, but for `BusyError`; nothing is kept."""
+        """Plan an experiment without keeping it. Raises as `submit` does, but for `BusyError`."""
         experiment = self._prepared(request, "")
         parameters = experiment.parameters
         return Plan(
@@ -56,9 +57,30 @@ class Acceptance:
         )
 
     def submit(
-        self, request: NewExperiment, owner_token: str, *, transient: bool = False, press: str | None = None
+        self, request: NewExperiment, owner_token: str, press: str | None = None, *, transient: bool = False
     ) -> Experiment:
-        """Accept an experiment: it is on disk and queued when this returns. The same press again gives it once more."""
+        """Accept an experiment: it is on disk and queued when this returns.
+
+        Parameters
+        ----------
+        request : NewExperiment
+        owner_token : str
+        press : str, optional
+            A secret of one press of a button: what the same owner asks for with the same press is the same experiment.
+        transient : bool
+            Whether it is made for one answer, and deleted with it.
+
+        Raises
+        ------
+        InvalidInputError
+            With the dotted field at fault.
+        NotFoundError
+            If its method or sample is not there.
+        TooLargeError
+            If the texture would be too large.
+        BusyError
+            If too many experiments wait already.
+        """
         owner = token_digest(owner_token)
         identifier = new_identifier()
         if press is not None:
@@ -70,8 +92,7 @@ class Acceptance:
                 identifier = known
             except DeletedError:
                 pass  # pressed anew since
-        if self._executor.waiting >= self._queue_limit:
-            raise BusyError("Too many experiments wait already. Try again in a minute.")
+        check_queue(self._executor, self._queue_limit)
         experiment = replace(self._prepared(request, owner), id=identifier, transient=transient)
         try:
             self._store.add(experiment)
@@ -88,5 +109,5 @@ class Acceptance:
 
     def _prepared(self, request: NewExperiment, owner: str) -> Experiment:
         return prepare(
-            request, owner, sample=self._store.sample, transparent=self._intake.transparent, allowed=self._allowed
+            request, owner, sample=self._store.sample, transparent=self._samples.has_transparency, allowed=self._allowed
         )

@@ -1,52 +1,44 @@
-"""An output straight from files: run once for one answer, and forgotten with it."""
+"""Transient experiments: an output straight from files, run once for one answer and deleted with it."""
 
 import asyncio
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from itertools import zip_longest
 from pathlib import Path
 from typing import Any, Literal
 
 from app.errors import ConflictError, InvalidInputError
+from app.experiments.experiments import Experiments
 from app.experiments.files.outputs import AnyFormat, Outputs, file_of
 from app.experiments.files.renditions import PNG, check_deep
 from app.experiments.housekeeping import Housekeeping
 from app.experiments.model import Experiment, Sample, Status
 from app.experiments.preparation import Answer, NewExperiment, NewInput
-from app.experiments.samples import SampleIntake
-from app.experiments.watching import Following
+from app.experiments.samples import Samples
+from app.experiments.submission import Submission
+from app.experiments.watching import Watching
 from app.images.crop import Frames, Rectangle
 from app.methods.effects import possible_output
 from app.methods.registry import method as method_named
 
 
-class Direct:
-    """Runs that leave nothing behind.
-
-    Parameters
-    ----------
-    intake, housekeeping, outputs, following
-        Those of the service.
-    submit : callable
-        Accepts a transient experiment.
-    forget : callable
-        Stops a transient experiment if it still runs, and removes it.
-    """
+class Transient:
+    """Runs that leave nothing behind; the parameters are those of the service."""
 
     def __init__(
         self,
-        intake: SampleIntake,
-        housekeeping: Housekeeping,
+        samples: Samples,
+        submission: Submission,
+        experiments: Experiments,
         outputs: Outputs,
-        following: Following,
-        submit: Callable[[NewExperiment], Experiment],
-        forget: Callable[[Experiment], None],
+        watching: Watching,
+        housekeeping: Housekeeping,
     ) -> None:
-        self._intake = intake
-        self._housekeeping = housekeeping
+        self._samples = samples
+        self._submission = submission
+        self._experiments = experiments
         self._outputs = outputs
-        self._following = following
-        self._submit = submit
-        self._forget = forget
+        self._watching = watching
+        self._housekeeping = housekeeping
 
     async def synthesize(
         self,
@@ -54,26 +46,43 @@ class Direct:
         *,
         method: str,
         crops: Sequence[Rectangle | None],
-        frames: Sequence[Frames | None],
         parameters: Mapping[str, Any],
-        output: str,
-        file_format: AnyFormat | None,
-        depth: Literal[8, 16] | None,
+        frames: Sequence[Frames | None] = (),
+        output: str = "texture",
+        file_format: AnyFormat | None = None,
+        depth: Literal[8, 16] | None = None,
     ) -> tuple[bytes, str]:
-        """The picture and its media type."""
+        """Make an output straight from files: its bytes and media type. Nothing of it is kept, the files included.
+
+        Parameters
+        ----------
+        uploads : sequence of Path
+            One file for each input.
+        method : str
+        crops, frames : sequence of Rectangle or None, and of Frames or None
+            Of the files, in their order; for those at the end that are left out, and for None, as in `NewInput`.
+        parameters : mapping
+        output, file_format, depth
+            The name of the output that is the answer, and what it is written as.
+
+        Raises
+        ------
+        AppError
+            Any of those of `Samples.add`, `Submission.submit` and `Outputs.convert`; `ConflictError` if the run failed.
+        """
         # It goes on to its end if the caller hangs up: only then is known what to forget.
         begun = asyncio.ensure_future(
             asyncio.to_thread(self._begin, uploads, method, crops, frames, parameters, output, file_format, depth)
         )
         try:
             experiment = await asyncio.shield(begun)
-            finished = await self._following.wait(experiment.id, float("inf"))
+            finished = await self._watching.wait(experiment.id, float("inf"))
             if finished.status is not Status.SUCCEEDED:
                 raise ConflictError(finished.error or "The run was cancelled.")
-            made, path = await asyncio.to_thread(self._outputs.output, experiment.id, finished.wanted)
+            made, path = await asyncio.to_thread(self._outputs.get, experiment.id, finished.wanted)
             media_type = made.media_type
             if media_type == PNG:
-                path, media_type = await self._outputs.converted(experiment.id, made.name, file_format, depth)
+                path, media_type = await self._outputs.convert(experiment.id, made.name, file_format, depth)
             return await asyncio.to_thread(path.read_bytes), media_type
         finally:
             await asyncio.shield(self._forgotten(begun))
@@ -101,10 +110,12 @@ class Direct:
                         f"inputs.{len(uploads)}.{field}",
                     )
             for upload in uploads:
-                samples.append(self._intake.add(upload, None))
+                samples.append(self._samples.add(upload, None))
             parts = zip_longest(samples, crops, frames)
             inputs = tuple(NewInput(sample.id, crop, time) for sample, crop, time in parts)
-            return self._submit(NewExperiment(method, inputs, parameters, listed=False, answer=answer))
+            return self._submission.submit_transient(
+                NewExperiment(method, inputs, parameters, listed=False, answer=answer)
+            )
         except BaseException:
             for sample in samples:
                 self._housekeeping.remove_sample(sample.id)
@@ -116,4 +127,4 @@ class Direct:
     async def _forgotten(self, begun: asyncio.Future[Experiment]) -> None:
         await asyncio.wait({begun})
         if begun.exception() is None:
-            await asyncio.to_thread(self._forget, begun.result())
+            await asyncio.to_thread(self._experiments.discard, begun.result())

@@ -1,4 +1,4 @@
-"""Where an experiment stands, and waiting for it to move: asked of this process's engine first, then of the store."""
+"""Progress of experiments: snapshots, and awaiting changes (the local executor first, the store as fallback)."""
 
 import asyncio
 import time
@@ -17,7 +17,7 @@ UPDATE_SECONDS = 0.1  # changes are passed on at most so often
 Listener = tuple[asyncio.AbstractEventLoop, asyncio.Event]
 
 
-class Following:
+class Watching:
     """Snapshots, and coroutines that wake when one changes.
 
     Parameters
@@ -41,16 +41,11 @@ class Following:
                 loop.call_soon_threadsafe(event.set)
 
     def snapshot(self, experiment_id: str) -> Snapshot:
-        """The state of this moment.
-
-        Raises
-        ------
-        NotFoundError, DeletedError
-        """
+        """Read the state of this moment. Raises `NotFoundError` or `DeletedError`."""
         return self._executor.snapshot(experiment_id) or _snapshot_of(self._store.get(experiment_id))
 
     async def wait(self, experiment_id: str, seconds: float) -> Experiment:
-        """The experiment once it has finished, or as it is after this many seconds."""
+        """Return the experiment once it has finished, or as it is after this many seconds."""
         deadline = time.monotonic() + seconds
         told = True
         with self._listen(experiment_id) as changed:
@@ -65,7 +60,7 @@ class Following:
                 told = await _within(changed, min(remaining, POLL_SECONDS))
 
     async def watch(self, experiment_id: str) -> AsyncGenerator[Snapshot, None]:
-        """Every change, several at once if they come fast; ends after the finished state."""
+        """Yield every change, several at once if they come fast; end after the finished state."""
         last: Snapshot | None = None
         told = True
         with self._listen(experiment_id) as changed:
@@ -82,8 +77,8 @@ class Following:
                 told = await _within(changed, POLL_SECONDS)
                 await asyncio.sleep(UPDATE_SECONDS)
 
-    async def left(self, job: str, seconds: float) -> bool:
-        """Whether the executor is done with this job, at the latest after so many seconds."""
+    async def wait_until_left(self, job: str, seconds: float) -> bool:
+        """Return True once the executor is done with this job, or False after so many seconds."""
         deadline = time.monotonic() + seconds
         with self._listen(job) as changed:
             while self._executor.snapshot(job) is not None:

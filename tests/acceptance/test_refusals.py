@@ -81,7 +81,7 @@ def test_a_full_queue(visitors: Any, full_site: Any, assert_accessible: Any, scr
         page.fill("#seed", "4")
         page.clock.run_for(LATER)
     wait_out(page)
-    expect(summary).to_contain_text("Too many experiments wait")
+    expect(summary).to_contain_text("too many experiments wait")
     refused(page, 503)
     expect(summary).to_be_focused()
 

@@ -62,7 +62,7 @@ def upload(photograph: Path, tmp_path: Path) -> Path:
 
 @pytest.fixture
 def sample(service: Service, upload: Path) -> Sample:
-    return service.add_sample(upload, None)
+    return service.samples.add(upload, None)
 
 
 @pytest.fixture

@@ -18,6 +18,6 @@ def a_request(sample: Sample, **parameters: Any) -> NewExperiment:
 
 def finished(service: Service, request: NewExperiment) -> Experiment:
     """Submit and wait."""
-    experiment = asyncio.run(service.wait(service.submit(request, OWNER).id, SECONDS))
+    experiment = asyncio.run(service.watching.wait(service.submission.submit(request, OWNER).id, SECONDS))
     assert experiment.status.finished
     return experiment

@@ -56,11 +56,11 @@ def test_a_killed_service_finishes_after_a_restart_as_if_nothing_had_happened(
 ) -> None:
     """The bytes are those of an undisturbed run, and a service that is killed alone takes its workers along."""
     idle = make_service()
-    inputs = (NewInput(idle.add_sample(upload, None).id),)
+    inputs = (NewInput(idle.samples.add(upload, None).id),)
     request = NewExperiment("rpn", inputs, {"width": SIDE, "height": SIDE, "seed": 9})
-    disturbed = idle.submit(request, "owner").id
+    disturbed = idle.submission.submit(request, "owner").id
     with service_process(settings) as process:
-        until(lambda: idle.get(disturbed).status is Status.RUNNING)
+        until(lambda: idle.experiments.get(disturbed).status is Status.RUNNING)
         family = psutil.Process(process.pid).children(recursive=True)
         assert family
         if whole_group:
@@ -69,15 +69,15 @@ def test_a_killed_service_finishes_after_a_restart_as_if_nothing_had_happened(
             process.kill()
         process.wait(SECONDS)
         assert psutil.wait_procs(family, SECONDS)[1] == []
-    assert idle.get(disturbed).status is Status.RUNNING
-    undisturbed = idle.submit(request, "owner").id
+    assert idle.experiments.get(disturbed).status is Status.RUNNING
+    undisturbed = idle.submission.submit(request, "owner").id
     with service_process(settings) as process:
         for experiment_id in (disturbed, undisturbed):
-            assert asyncio.run(idle.wait(experiment_id, SECONDS)).status is Status.SUCCEEDED
+            assert asyncio.run(idle.watching.wait(experiment_id, SECONDS)).status is Status.SUCCEEDED
         family = psutil.Process(process.pid).children(recursive=True)
         process.send_signal(signal.SIGTERM)
         process.wait(SECONDS)
         assert psutil.wait_procs(family, SECONDS)[1] == []
-    one, other = idle.get(disturbed), idle.get(undisturbed)
+    one, other = idle.experiments.get(disturbed), idle.experiments.get(undisturbed)
     assert (one.attempts, other.attempts) == (2, 1)
     assert one.outputs == other.outputs

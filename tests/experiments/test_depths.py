@@ -35,7 +35,7 @@ def deep_upload(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def deep(service: Service, deep_upload: Path) -> Sample:
-    return service.add_sample(Path(shutil.copy(deep_upload, deep_upload.with_suffix(".copy"))), None)
+    return service.samples.add(Path(shutil.copy(deep_upload, deep_upload.with_suffix(".copy"))), None)
 
 
 def run(service: Service, method: str, *samples: Sample, **parameters: Any) -> Experiment:
@@ -64,29 +64,29 @@ def test_every_texture_comes_at_16_bits_and_is_the_same_one(
 ) -> None:
     experiment = run(service, method, *[sample] * count, **parameters)
     for name in names:
-        path, media_type = asyncio.run(service.converted(experiment.id, name, "png", 16))
-        fine, coarse = decoded(path), decoded(service.output(experiment.id, name)[1])
+        path, media_type = asyncio.run(service.outputs.convert(experiment.id, name, "png", 16))
+        fine, coarse = decoded(path), decoded(service.outputs.get(experiment.id, name)[1])
         assert (fine.dtype, coarse.dtype, media_type) == (np.uint16, np.uint8, "image/png")
         assert np.abs(fine / 257.0 - coarse).max() <= 0.5 + 1e-3  # 8 bits are the 16 rounded
         assert (fine % 257 != 0).mean() > 0.5, "8-bit values made wider"  # black and white are both
-        tiff, _ = asyncio.run(service.converted(experiment.id, name, "tiff", 16))
+        tiff, _ = asyncio.run(service.outputs.convert(experiment.id, name, "tiff", 16))
         assert np.array_equal(decoded(tiff), fine)
 
 
 def test_textures_that_were_made_on_the_way_are_kept(service: Service, sample: Sample) -> None:
     experiment = run(service, "mix", sample, sample, strip=3)
-    asyncio.run(service.converted(experiment.id, "mix-2", "png", 16))
-    hidden = [output.name for output in service.get(experiment.id).outputs if not output.listed]
+    asyncio.run(service.outputs.convert(experiment.id, "mix-2", "png", 16))
+    hidden = [output.name for output in service.experiments.get(experiment.id).outputs if not output.listed]
     assert hidden == [".texture-16", ".mix-1-16", ".mix-2-16"]
-    asyncio.run(service.converted(experiment.id, "mix-1", "png", 16))
-    assert [output.name for output in service.get(experiment.id).outputs if not output.listed] == hidden
+    asyncio.run(service.outputs.convert(experiment.id, "mix-1", "png", 16))
+    assert [output.name for output in service.experiments.get(experiment.id).outputs if not output.listed] == hidden
 
 
 @pytest.mark.parametrize("name", ["crop", "input-spectrum"])
 def test_what_has_no_more_than_8_bits_says_so(service: Service, sample: Sample, name: str) -> None:
     experiment = run(service, "rpn", sample)
     with pytest.raises(InvalidInputError, match="8 bits per channel") as refused:
-        asyncio.run(service.converted(experiment.id, name, "png", 16))
+        asyncio.run(service.outputs.convert(experiment.id, name, "png", 16))
     assert refused.value.field == "depth"
 
 
@@ -96,22 +96,22 @@ def test_a_sample_of_16_bits_gives_pictures_of_16_bits(service: Service, deep: S
     assert experiment.depth == 16
     for output in experiment.outputs:
         kind = np.uint8 if output.name.endswith("spectrum") else np.uint16
-        assert decoded(service.output(experiment.id, output.name)[1]).dtype == kind, output.name
-    crop = decoded(service.output(experiment.id, "crop")[1])
+        assert decoded(service.outputs.get(experiment.id, output.name)[1]).dtype == kind, output.name
+    crop = decoded(service.outputs.get(experiment.id, "crop")[1])
     assert np.array_equal(crop, np.random.default_rng(8).integers(0, 65536, (48, 64, 3), dtype=np.uint16)[:20, :24])
-    stored = service.output(experiment.id, "texture")[1]
+    stored = service.outputs.get(experiment.id, "texture")[1]
     for file_format in (None, "png"):
-        assert asyncio.run(service.converted(experiment.id, "texture", file_format, 16))[0] == stored
-    assert not [output for output in service.get(experiment.id).outputs if not output.listed]
-    tiff, _ = asyncio.run(service.converted(experiment.id, "texture", "tiff"))
+        assert asyncio.run(service.outputs.convert(experiment.id, "texture", file_format, 16))[0] == stored
+    assert not [output for output in service.experiments.get(experiment.id).outputs if not output.listed]
+    tiff, _ = asyncio.run(service.outputs.convert(experiment.id, "texture", "tiff"))
     assert np.array_equal(decoded(tiff), decoded(stored))
 
 
 @pytest.mark.parametrize("file_format", ["png", "tiff"])
 def test_8_bits_of_it_are_still_to_be_had(service: Service, deep: Sample, file_format: Any) -> None:
     experiment = run(service, "rpn", deep)
-    path, _ = asyncio.run(service.converted(experiment.id, "texture", file_format, 8))
-    coarse, fine = decoded(path), decoded(service.output(experiment.id, "texture")[1])
+    path, _ = asyncio.run(service.outputs.convert(experiment.id, "texture", file_format, 8))
+    coarse, fine = decoded(path), decoded(service.outputs.get(experiment.id, "texture")[1])
     assert coarse.dtype == np.uint8
     assert np.abs(fine / 257.0 - coarse).max() <= 0.51
 
@@ -119,7 +119,7 @@ def test_8_bits_of_it_are_still_to_be_had(service: Service, deep: Sample, file_f
 @pytest.mark.parametrize("file_format", ["jpeg", "webp"])
 def test_formats_without_16_bits_have_8(service: Service, deep: Sample, file_format: Any) -> None:
     experiment = run(service, "rpn", deep)
-    path, _ = asyncio.run(service.converted(experiment.id, "texture", file_format))
+    path, _ = asyncio.run(service.outputs.convert(experiment.id, "texture", file_format))
     assert decoded(path).dtype == np.uint8
 
 
@@ -130,7 +130,7 @@ def test_the_deepest_of_several_samples_decides(
     samples = [(sample, deep)[place] for place in order]
     experiment = run(service, "mix", *samples, strip=2)
     assert experiment.depth == 16
-    assert decoded(service.output(experiment.id, "mix-2")[1]).dtype == np.uint16
+    assert decoded(service.outputs.get(experiment.id, "mix-2")[1]).dtype == np.uint16
 
 
 @pytest.mark.parametrize("depth", [None, 8, 16])
@@ -140,11 +140,11 @@ def test_straight_from_a_file_it_is_the_same_file(
 ) -> None:
     experiment = run(service, "rpn", deep)
     data, _ = asyncio.run(
-        service.synthesize(
+        service.transient.synthesize(
             [deep_upload], method="rpn", crops=[PART], parameters={}, output=output, file_format="png", depth=depth
         )
     )
-    assert data == asyncio.run(service.converted(experiment.id, output, "png", depth))[0].read_bytes()
+    assert data == asyncio.run(service.outputs.convert(experiment.id, output, "png", depth))[0].read_bytes()
 
 
 Broken = Callable[[Exception], None]
@@ -182,7 +182,7 @@ def test_what_goes_wrong_at_16_bits_is_said_in_the_words_of_an_experiment(
     experiment = run(service, "rpn", sample)
     broken(error)
     with pytest.raises(AppError, match=words):
-        asyncio.run(service.converted(experiment.id, "texture", "png", 16))
+        asyncio.run(service.outputs.convert(experiment.id, "texture", "png", 16))
 
 
 def test_deleting_the_experiment_ends_its_run_at_16_bits(
@@ -204,9 +204,9 @@ def test_deleting_the_experiment_ends_its_run_at_16_bits(
     monkeypatch.setitem(METHODS, "modulus-phase", replace(original, run=endless))
 
     async def waiting() -> None:
-        download = asyncio.create_task(service.converted(experiment.id, "other", "png", 16))
+        download = asyncio.create_task(service.outputs.convert(experiment.id, "other", "png", 16))
         assert await asyncio.to_thread(running.wait, PATIENCE)
-        await asyncio.to_thread(service.cancel_or_delete, experiment.id, OWNER)
+        await asyncio.to_thread(service.experiments.cancel_or_delete, experiment.id, OWNER)
         assert await asyncio.to_thread(stopped.wait, PATIENCE)
         with pytest.raises(DeletedError):
             await download

@@ -75,9 +75,11 @@ def test_facts_are_kept_with_the_name_of_their_output(tmp_path: Path) -> None:
 
 def test_every_experiment_has_diagnostics(service: Service, photograph: Path) -> None:
     """White noise is its own random phase texture: δ of the sample and of the texture is near 0."""
-    sample = service.add_sample(photograph, None)
-    experiment = service.submit(NewExperiment("rpn", (NewInput(sample.id),), {"width": 128, "height": 128}), "token")
-    found = asyncio.run(service.wait(experiment.id, SECONDS)).diagnostics
+    sample = service.samples.add(photograph, None)
+    experiment = service.submission.submit(
+        NewExperiment("rpn", (NewInput(sample.id),), {"width": 128, "height": 128}), "token"
+    )
+    found = asyncio.run(service.watching.wait(experiment.id, SECONDS)).diagnostics
     assert [len(found["structure"][side]) for side in ("inputs", "outputs")] == [1, 1]
     assert max(abs(delta) for side in found["structure"].values() for delta in side) < 0.1
     assert found["facts"] == []

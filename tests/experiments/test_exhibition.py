@@ -63,7 +63,7 @@ def two(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def filled(service: Service, two: None) -> Service:
-    assert service.catalogue.fill(threading.Event()) == exhibition.Filled(made=2, without_sample=1)
+    assert service.exhibition.fill(threading.Event()) == exhibition.Filled(made=2, without_sample=1)
     return service
 
 
@@ -99,44 +99,44 @@ def test_every_method_is_told_of_once_also_one_that_stands_in_no_group(monkeypat
 
 
 def test_made_twice_it_gives_the_same_bytes(filled: Service) -> None:
-    digests = [output.digest for output in filled.catalogue.find(WAVES).outputs]
+    digests = [output.digest for output in filled.exhibition.find(WAVES).outputs]
     told = []
-    again = filled.catalogue.fill(threading.Event(), again=True, told=lambda *args: told.append(args))
+    again = filled.exhibition.fill(threading.Event(), again=True, told=lambda *args: told.append(args))
     assert again == exhibition.Filled(made=2, without_sample=1)
-    assert [output.digest for output in filled.catalogue.find(WAVES).outputs] == digests
+    assert [output.digest for output in filled.exhibition.find(WAVES).outputs] == digests
     assert told == [(1, 2, WAVES, None), (2, 2, PLASTER, None)]
 
 
 def test_what_is_made_is_not_made_again(filled: Service) -> None:
-    assert filled.catalogue.fill(threading.Event()) == exhibition.Filled(kept=2, without_sample=1)
+    assert filled.exhibition.fill(threading.Event()) == exhibition.Filled(kept=2, without_sample=1)
 
 
 def test_it_is_in_no_archive_and_survives_pruning(filled: Service, monkeypatch: pytest.MonkeyPatch) -> None:
     """What no page declares any more goes like any other experiment."""
-    assert filled.page().experiments == ()
+    assert filled.experiments.page().experiments == ()
     monkeypatch.setattr("app.experiments.housekeeping.exhibits", lambda: {identifier(WAVES): WAVES})
-    assert filled.prune(timedelta(0)).experiments == 1
-    assert filled.catalogue.find(WAVES).status is Status.SUCCEEDED
+    assert filled.housekeeping.prune(timedelta(0)).experiments == 1
+    assert filled.exhibition.find(WAVES).status is Status.SUCCEEDED
     with pytest.raises(DeletedError):
-        filled.get(identifier(PLASTER))
+        filled.experiments.get(identifier(PLASTER))
 
 
 def test_only_the_operator_may_delete_it_and_it_stays_deleted_until_made_again(filled: Service) -> None:
     with pytest.raises(ForbiddenError):
-        filled.cancel_or_delete(identifier(WAVES), exhibition.OWNER)
-    filled.cancel_or_delete(identifier(WAVES), "the operator")
-    assert filled.catalogue.find(WAVES) is None
-    assert filled.catalogue.fill(threading.Event()).made == 0
-    assert filled.catalogue.fill(threading.Event(), again=True).made == 2
-    assert filled.catalogue.find(WAVES).status is Status.SUCCEEDED
+        filled.experiments.cancel_or_delete(identifier(WAVES), exhibition.OWNER)
+    filled.experiments.cancel_or_delete(identifier(WAVES), "the operator")
+    assert filled.exhibition.find(WAVES) is None
+    assert filled.exhibition.fill(threading.Event()).made == 0
+    assert filled.exhibition.fill(threading.Event(), again=True).made == 2
+    assert filled.exhibition.find(WAVES).status is Status.SUCCEEDED
 
 
 def test_what_failed_is_tried_again(service: Service, two: None, monkeypatch: pytest.MonkeyPatch) -> None:
     with monkeypatch.context() as broken:
         broken.setattr("app.experiments.run.read_crop", lambda *args: 1 / 0)
-        assert service.catalogue.fill(threading.Event()).failed == 2
-    assert service.catalogue.find(WAVES).status is Status.FAILED
-    assert service.catalogue.fill(threading.Event()).made == 2
+        assert service.exhibition.fill(threading.Event()).failed == 2
+    assert service.exhibition.find(WAVES).status is Status.FAILED
+    assert service.exhibition.fill(threading.Event()).made == 2
 
 
 def test_the_service_makes_what_is_missing_in_the_background(
@@ -145,10 +145,10 @@ def test_the_service_makes_what_is_missing_in_the_background(
     service = make_service(settings.model_copy(update={"catalogue": True}))
     service.start()
     moments, deadline = threading.Event(), 400
-    while deadline and not ((found := service.catalogue.find(PLASTER)) and found.status.finished):
+    while deadline and not ((found := service.exhibition.find(PLASTER)) and found.status.finished):
         moments.wait(0.05)
         deadline -= 1
-    assert service.catalogue.find(PLASTER).status is Status.SUCCEEDED
+    assert service.exhibition.find(PLASTER).status is Status.SUCCEEDED
 
 
 class Busy:
@@ -175,18 +175,18 @@ def test_nothing_is_begun_while_somebody_waits(filled: Service) -> None:
             engine.waiting = 0 if len(asked) == 5 else engine.waiting
             return False
 
-    filled.catalogue._executor = engine
-    filled.catalogue.fill(Closing(), again=True)
+    filled.exhibition._executor = engine
+    filled.exhibition.fill(Closing(), again=True)
     assert engine.jobs == [identifier(WAVES), identifier(PLASTER)]
     assert len(asked) == 5
 
 
 def test_an_exhibit_that_nobody_made_is_not_found_but_can_be_prepared(filled: Service) -> None:
     other = Exhibit("rpn", WAVES.inputs, {"seed": 3})
-    assert filled.catalogue.find(other) is None
-    assert filled.catalogue.prepared(other).parameters["width"] == 64
+    assert filled.exhibition.find(other) is None
+    assert filled.exhibition.prepare(other).parameters["width"] == 64
     with pytest.raises(NotFoundError):
-        filled.catalogue.prepared(Exhibit("rpn", (("nothing", "0,0,9,9"),)))
+        filled.exhibition.prepare(Exhibit("rpn", (("nothing", "0,0,9,9"),)))
 
 
 def test_the_command_says_what_it_makes(tmp_path: Path, samples: Path) -> None:

@@ -41,7 +41,7 @@ def copy(path: Path) -> Path:
 
 @pytest.fixture
 def sample(service: Service, clip: Path) -> Sample:
-    return service.add_sample(copy(clip), None)
+    return service.samples.add(copy(clip), None)
 
 
 def request(
@@ -60,18 +60,18 @@ def experiment(service: Service, sample: Sample) -> Experiment:
 def test_a_clip_is_kept_as_it_is(service: Service, sample: Sample, film: np.ndarray) -> None:
     assert (sample.width, sample.height, sample.frames, sample.rate) == (64, 48, 12, 12.0)
     assert sample.media_type == "video/webm"
-    path, media_type = service.film(sample.id, "webm")
+    path, media_type = service.renditions.video(sample, "webm")
     assert media_type == "video/webm"
     assert np.array_equal(np.stack(list(read_video(path))), film)
 
 
 def test_the_method_gets_the_crop_of_the_time_range(service: Service, experiment: Experiment, film: np.ndarray) -> None:
-    _, path = service.output(experiment.id, "crop")
+    _, path = service.outputs.get(experiment.id, "crop")
     assert np.array_equal(np.stack(list(read_video(path))), film[2:10, 2:38, 4:44])
 
 
 def test_the_texture_is_a_film_of_the_length_that_was_asked_for(service: Service, experiment: Experiment) -> None:
-    output, path = service.output(experiment.id, "texture")
+    output, path = service.outputs.get(experiment.id, "texture")
     assert (output.media_type, output.frames, output.rate) == ("video/webm", 10, 12.0)
     assert len(list(read_video(path))) == 10
     assert experiment.diagnostics["structure"]["outputs"]
@@ -79,7 +79,7 @@ def test_the_texture_is_a_film_of_the_length_that_was_asked_for(service: Service
 
 def test_a_still_method_works_on_one_frame_of_a_clip(service: Service, sample: Sample, film: np.ndarray) -> None:
     made = finished(service, request(sample, "rpn", Frames(5, 1)))
-    _, path = service.output(made.id, "crop")
+    _, path = service.outputs.get(made.id, "crop")
     with Image.open(path) as picture:
         assert np.array_equal(np.asarray(picture), film[5, 2:38, 4:44])
 
@@ -87,7 +87,7 @@ def test_a_still_method_works_on_one_frame_of_a_clip(service: Service, sample: S
 def test_a_format_names_one_of_the_two_files(service: Service, experiment: Experiment) -> None:
     for name in ("texture", "texture-mp4"):
         for file_format, codec in ((None, "vp9"), ("webm", "vp9"), ("mp4", "h264")):
-            path, media_type = asyncio.run(service.converted(experiment.id, name, file_format))  # type: ignore[arg-type]
+            path, media_type = asyncio.run(service.outputs.convert(experiment.id, name, file_format))  # type: ignore[arg-type]
             assert media_type == f"video/{file_format or 'webm'}"
             with av.open(path) as container:
                 assert container.streams.video[0].codec_context.name == codec
@@ -106,13 +106,13 @@ def test_a_format_that_an_output_has_not_is_refused(
     service: Service, experiment: Experiment, name: str, file_format: str, depth: int | None, words: str
 ) -> None:
     with pytest.raises(InvalidInputError, match=words):
-        asyncio.run(service.converted(experiment.id, name, file_format, depth))  # type: ignore[arg-type]
+        asyncio.run(service.outputs.convert(experiment.id, name, file_format, depth))  # type: ignore[arg-type]
 
 
 def test_it_is_shown_by_first_frames(service: Service, experiment: Experiment) -> None:
     """Thumbnails, link preview and posters are still pictures."""
     for name in (".thumbnail-crop", ".thumbnail-texture", ".preview", ".poster-texture"):
-        output, path = service.output(experiment.id, name)
+        output, path = service.outputs.get(experiment.id, name)
         with Image.open(path) as picture:
             assert picture.size == (output.width, output.height)
             assert getattr(picture, "n_frames", 1) == 1
@@ -123,7 +123,7 @@ def test_a_video_straight_from_a_clip_is_the_same_and_leaves_nothing(
     service: Service, experiment: Experiment, clip: Path, file_format: str | None
 ) -> None:
     data, media_type = asyncio.run(
-        service.synthesize(
+        service.transient.synthesize(
             [copy(clip)],
             method="video-rpn",
             crops=[CROP],
@@ -134,16 +134,16 @@ def test_a_video_straight_from_a_clip_is_the_same_and_leaves_nothing(
     )
     name = "texture-mp4" if file_format == "mp4" else "texture"
     assert media_type == f"video/{file_format or 'webm'}"
-    assert data == service.output(experiment.id, name)[1].read_bytes()
-    assert service.counts()["succeeded"] == 1
+    assert data == service.outputs.get(experiment.id, name)[1].read_bytes()
+    assert service.experiments.counts()["succeeded"] == 1
     with av.open(io.BytesIO(data)) as container:
         assert sum(1 for _ in container.decode(video=0)) == 10
 
 
 def test_what_it_would_take_is_known_before_it_is_run(service: Service, sample: Sample) -> None:
-    plan = service.check(request(sample, width=50))
+    plan = service.submission.check(request(sample, width=50))
     assert (plan.width, plan.height, plan.frames) == (50, 36, 8)
     assert 0 < plan.memory < plan.memory_limit
     with pytest.raises(TooLargeError):
-        service.check(request(sample, width=4096, height=17))
-    assert service.counts()["queued"] == 0
+        service.submission.check(request(sample, width=4096, height=17))
+    assert service.experiments.counts()["queued"] == 0

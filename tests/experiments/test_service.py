@@ -32,11 +32,11 @@ def test_a_photograph_becomes_a_texture(service: Service, sample: Sample) -> Non
     listed = [output.name for output in experiment.outputs if output.listed]
     assert listed == ["texture", "crop", "periodic", "smooth", "spot", "input-spectrum", "output-spectrum"]
     for output in experiment.outputs:
-        path = service.output(experiment.id, output.name)[1]
+        path = service.outputs.get(experiment.id, output.name)[1]
         assert path.stat().st_size == output.bytes
         if output.listed:
             assert Image.open(path).size == (output.width, output.height)
-    texture = service.output(experiment.id, "texture")[0]
+    texture = service.outputs.get(experiment.id, "texture")[0]
     assert (texture.width, texture.height) == (70, 36)
     assert "texture" in experiment.timings
     assert all(seconds >= 0 for seconds in experiment.timings.values())
@@ -44,16 +44,16 @@ def test_a_photograph_becomes_a_texture(service: Service, sample: Sample) -> Non
 
 def test_the_crop_output_is_the_samples_pixels(service: Service, sample: Sample, photograph: Path) -> None:
     experiment = finished(service, a_request(sample))
-    crop = imagecodecs.png_decode(service.output(experiment.id, "crop")[1].read_bytes())
+    crop = imagecodecs.png_decode(service.outputs.get(experiment.id, "crop")[1].read_bytes())
     assert np.array_equal(crop, imagecodecs.png_decode(photograph.read_bytes())[2:38, 4:44])
 
 
 def test_the_same_experiment_gives_the_same_bytes_and_shares_the_file(service: Service, sample: Sample) -> None:
     one, other = (finished(service, a_request(sample, seed=5)) for _ in range(2))
-    assert service.output(one.id, "texture")[1] == service.output(other.id, "texture")[1]
+    assert service.outputs.get(one.id, "texture")[1] == service.outputs.get(other.id, "texture")[1]
     assert (
-        service.output(finished(service, a_request(sample, seed=6)).id, "texture")[1]
-        != service.output(one.id, "texture")[1]
+        service.outputs.get(finished(service, a_request(sample, seed=6)).id, "texture")[1]
+        != service.outputs.get(one.id, "texture")[1]
     )
 
 
@@ -66,11 +66,11 @@ def test_identifiers_are_long_and_never_look_like_an_option(service: Service, sa
 def test_thumbnails_are_hidden_and_a_preview_is_made_when_asked_for(service: Service, sample: Sample) -> None:
     experiment = finished(service, a_request(sample))
     for name in (".thumbnail-crop", ".thumbnail-texture"):
-        output, path = service.output(experiment.id, name)
+        output, path = service.outputs.get(experiment.id, name)
         assert not output.listed
         assert max(Image.open(path).size) <= 320
         assert Image.open(path).size == (output.width, output.height)
-    output, path = service.output(experiment.id, ".preview")
+    output, path = service.outputs.get(experiment.id, ".preview")
     assert Image.open(path).size == (output.width, output.height) == (1200, 630)
 
 
@@ -98,10 +98,10 @@ def test_what_cannot_run_is_refused_with_words(
     if "crop" in change:
         change = {"inputs": (NewInput(sample.id, change["crop"]),)}
     with pytest.raises(Exception) as refusal:  # noqa: PT011 - its class is asserted below
-        service.submit(replace(request, **change), OWNER)
+        service.submission.submit(replace(request, **change), OWNER)
     assert getattr(refusal.value, "field", None) == field
     assert words in str(refusal.value)
-    assert sum(service.counts().values()) == 0
+    assert sum(service.experiments.counts().values()) == 0
 
 
 def test_a_crop_with_transparent_pixels_is_refused_and_an_opaque_one_runs(service: Service, tmp_path: Path) -> None:
@@ -109,22 +109,22 @@ def test_a_crop_with_transparent_pixels_is_refused_and_an_opaque_one_runs(servic
     pixels[..., 3] = 255
     pixels[:5, :5, 3] = 100
     Image.fromarray(pixels).save(tmp_path / "hole.png")
-    sample = service.add_sample(tmp_path / "hole.png", None)
+    sample = service.samples.add(tmp_path / "hole.png", None)
     assert sample.transparent
     with pytest.raises(InvalidInputError, match="transparent") as refusal:
-        service.submit(NewExperiment("rpn", (NewInput(sample.id),), {}), OWNER)
+        service.submission.submit(NewExperiment("rpn", (NewInput(sample.id),), {}), OWNER)
     assert refusal.value.field == "inputs.0.crop"
     opaque = NewExperiment("rpn", (NewInput(sample.id, Rectangle(5, 5, 35, 35)),), {})
     assert finished(service, opaque).status is Status.SUCCEEDED
 
 
 def test_an_upload_is_gone_whatever_comes_of_it(service: Service, upload: Path, stored: Stored) -> None:
-    service.add_sample(upload, None)
+    service.samples.add(upload, None)
     assert not upload.exists()
     upload.write_bytes(b"\x89PNG\r\n\x1a\n and no more")
     before = stored()
     with pytest.raises(BrokenFileError):
-        service.add_sample(upload, None)
+        service.samples.add(upload, None)
     assert not upload.exists()
     assert stored() == before
 
@@ -137,13 +137,13 @@ def test_only_its_owner_and_the_operator_may_change_an_experiment(
     operator = settings.operator_token.get_secret_value()
     for stranger in (None, "", "another token", experiment.owner, "\ud800"):
         with pytest.raises(ForbiddenError):
-            service.cancel_or_delete(experiment.id, stranger)
+            service.experiments.cancel_or_delete(experiment.id, stranger)
         with pytest.raises(ForbiddenError):
-            service.set_listed(experiment.id, False, stranger)
-    service.set_listed(experiment.id, False, OWNER)
-    assert service.page().experiments == ()
-    service.set_listed(experiment.id, True, operator)
-    assert [each.id for each in service.page().experiments] == [experiment.id]
+            service.experiments.set_listed(experiment.id, False, stranger)
+    service.experiments.set_listed(experiment.id, False, OWNER)
+    assert service.experiments.page().experiments == ()
+    service.experiments.set_listed(experiment.id, True, operator)
+    assert [each.id for each in service.experiments.page().experiments] == [experiment.id]
     assert OWNER not in repr(experiment)
 
 
@@ -153,34 +153,34 @@ def test_deleting_removes_what_nothing_else_refers_to(
     before = stored()
     assert len(before) == 1
     one, twin = (finished(service, a_request(sample, seed=1)) for _ in range(2))
-    asyncio.run(service.converted(one.id, "texture", "tiff", 16))
-    service.output(one.id, ".preview")
-    service.rendition(sample.id, 100)
-    service.cancel_or_delete(one.id, OWNER)
+    asyncio.run(service.outputs.convert(one.id, "texture", "tiff", 16))
+    service.outputs.get(one.id, ".preview")
+    service.renditions.image(sample, 100)
+    service.experiments.cancel_or_delete(one.id, OWNER)
     with pytest.raises(DeletedError):
-        service.get(one.id)
-    assert service.output(twin.id, "texture")[1].exists()
-    service.cancel_or_delete(twin.id, OWNER)
+        service.experiments.get(one.id)
+    assert service.outputs.get(twin.id, "texture")[1].exists()
+    service.experiments.cancel_or_delete(twin.id, OWNER)
     with pytest.raises(NotFoundError):
-        service.sample(sample.id)
+        service.samples.get(sample.id)
     assert stored() == set()
 
 
 def test_deleting_keeps_a_sample_that_another_experiment_uses(service: Service, sample: Sample) -> None:
     one, other = (finished(service, a_request(sample, seed=seed)) for seed in (1, 2))
-    service.cancel_or_delete(one.id, OWNER)
-    assert service.sample(sample.id) == sample
-    assert service.output(other.id, "texture")[1].exists()
+    service.experiments.cancel_or_delete(one.id, OWNER)
+    assert service.samples.get(sample.id) == sample
+    assert service.outputs.get(other.id, "texture")[1].exists()
 
 
 def test_cancelling_stops_what_runs_and_what_waits(service: Service, sample: Sample) -> None:
     long = {"width": 256, "height": 256}
-    running, waiting = (service.submit(a_request(sample, **long), OWNER) for _ in range(2))
-    service.cancel_or_delete(waiting.id, OWNER)
-    service.cancel_or_delete(running.id, OWNER)
-    assert service.get(waiting.id).status is Status.CANCELLED
-    assert service.snapshot(waiting.id).status is Status.CANCELLED
-    ended = asyncio.run(service.wait(running.id, SECONDS))
+    running, waiting = (service.submission.submit(a_request(sample, **long), OWNER) for _ in range(2))
+    service.experiments.cancel_or_delete(waiting.id, OWNER)
+    service.experiments.cancel_or_delete(running.id, OWNER)
+    assert service.experiments.get(waiting.id).status is Status.CANCELLED
+    assert service.watching.snapshot(waiting.id).status is Status.CANCELLED
+    ended = asyncio.run(service.watching.wait(running.id, SECONDS))
     assert ended.status in {Status.CANCELLED, Status.SUCCEEDED}  # it may have been faster
     assert finished(service, a_request(sample)).status is Status.SUCCEEDED
 
@@ -189,36 +189,36 @@ def test_one_too_many_is_told_to_come_back(
     settings: Settings, upload: Path, make_service: Callable[..., Service]
 ) -> None:
     service = make_service()
-    sample = service.add_sample(upload, None)
-    waiting = [service.submit(a_request(sample), OWNER) for _ in range(settings.queue_limit)]
+    sample = service.samples.add(upload, None)
+    waiting = [service.submission.submit(a_request(sample), OWNER) for _ in range(settings.queue_limit)]
     with pytest.raises(BusyError):
-        service.submit(a_request(sample), OWNER)
-    assert [service.snapshot(each.id).position for each in waiting] == [1, 2, 3]
+        service.submission.submit(a_request(sample), OWNER)
+    assert [service.watching.snapshot(each.id).position for each in waiting] == [1, 2, 3]
     service.start()
     for each in waiting:
-        assert asyncio.run(service.wait(each.id, SECONDS)).status is Status.SUCCEEDED
+        assert asyncio.run(service.watching.wait(each.id, SECONDS)).status is Status.SUCCEEDED
 
 
 def test_what_was_accepted_is_finished_after_a_restart(upload: Path, make_service: Callable[..., Service]) -> None:
     before = make_service()
-    accepted = before.submit(a_request(before.add_sample(upload, None)), OWNER)
+    accepted = before.submission.submit(a_request(before.samples.add(upload, None)), OWNER)
     before.close()
     after = make_service()
-    assert after.get(accepted.id).status is Status.QUEUED
+    assert after.experiments.get(accepted.id).status is Status.QUEUED
     after.start()
-    assert asyncio.run(after.wait(accepted.id, SECONDS)).status is Status.SUCCEEDED
+    assert asyncio.run(after.watching.wait(accepted.id, SECONDS)).status is Status.SUCCEEDED
 
 
 def test_waiting_returns_in_time_even_if_nothing_happens(upload: Path, make_service: Callable[..., Service]) -> None:
     service = make_service()
-    experiment = service.submit(a_request(service.add_sample(upload, None)), OWNER)
-    assert asyncio.run(service.wait(experiment.id, 0.05)).status is Status.QUEUED
+    experiment = service.submission.submit(a_request(service.samples.add(upload, None)), OWNER)
+    assert asyncio.run(service.watching.wait(experiment.id, 0.05)).status is Status.QUEUED
 
 
 def test_watching_ends_with_the_finished_state(service: Service, sample: Sample) -> None:
     async def watched() -> list[Snapshot]:
-        experiment = service.submit(a_request(sample, width=256, height=256), OWNER)
-        return [snapshot async for snapshot in service.watch(experiment.id)]
+        experiment = service.submission.submit(a_request(sample, width=256, height=256), OWNER)
+        return [snapshot async for snapshot in service.watching.watch(experiment.id)]
 
     seen = asyncio.run(watched())
     assert seen[-1].status is Status.SUCCEEDED
@@ -233,17 +233,17 @@ def test_an_experiment_that_another_process_finishes_is_noticed(
 ) -> None:
     """Both if it never heard of the experiment, and if it waits for its own engine to get to it."""
     idle, working = make_service(), make_service()
-    sample = working.add_sample(upload, None)
-    accepted = idle.submit(a_request(sample), OWNER)
+    sample = working.samples.add(upload, None)
+    accepted = idle.submission.submit(a_request(sample), OWNER)
     working.start()
-    unheard_of = working.submit(a_request(sample), OWNER)
+    unheard_of = working.submission.submit(a_request(sample), OWNER)
 
     async def watched(experiment_id: str) -> list[Snapshot]:
-        return [snapshot async for snapshot in idle.watch(experiment_id)]
+        return [snapshot async for snapshot in idle.watching.watch(experiment_id)]
 
     for experiment in (accepted, unheard_of):
         assert asyncio.run(watched(experiment.id))[-1].status is Status.SUCCEEDED
-        assert asyncio.run(idle.wait(experiment.id, SECONDS)).status is Status.SUCCEEDED
+        assert asyncio.run(idle.watching.wait(experiment.id, SECONDS)).status is Status.SUCCEEDED
 
 
 def test_a_failed_run_says_why(service: Service, sample: Sample, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -256,7 +256,7 @@ def test_a_failed_run_says_why(service: Service, sample: Sample, monkeypatch: py
     assert experiment.error is not None
     assert "memory" in experiment.error
     with pytest.raises(NotFoundError):
-        service.output(experiment.id, "texture")
+        service.outputs.get(experiment.id, "texture")
 
 
 def test_pruning_removes_old_experiments_and_strays_only(
@@ -266,12 +266,12 @@ def test_pruning_removes_old_experiments_and_strays_only(
     stray = settings.data_dir / "files" / "00" / ("00" * 32)
     stray.parent.mkdir(exist_ok=True)
     stray.write_bytes(b"stray")
-    kept = service.prune(timedelta(days=1))
+    kept = service.housekeeping.prune(timedelta(days=1))
     assert (kept.experiments, kept.samples, kept.files) == (0, 0, 1)
-    gone = service.prune(timedelta(0))
+    gone = service.housekeeping.prune(timedelta(0))
     assert gone.experiments == 1
     with pytest.raises(DeletedError):
-        service.get(experiment.id)
+        service.experiments.get(experiment.id)
     assert stored() == set()
 
 
@@ -280,16 +280,16 @@ def test_bundled_photographs_are_taken_in_once(settings: Settings, make_service:
     first = make_service(settings)
     first.start()
     first._background[0].join()
-    found = first.bundled_samples()
+    found = first.samples.bundled()
     assert len(found) >= 20
     assert all(sample.bundled and sample.title for sample in found)
     first.close()
     second = make_service(settings)
     second.start()
     second._background[0].join()
-    assert second.bundled_samples() == found
-    assert second.prune(timedelta(0)).samples == 0
+    assert second.samples.bundled() == found
+    assert second.housekeeping.prune(timedelta(0)).samples == 0
 
 
 def _copied(service: Service, photograph: Path) -> Sample:
-    return service.add_sample(Path(shutil.copy(photograph, photograph.with_suffix(".copy"))), None)
+    return service.samples.add(Path(shutil.copy(photograph, photograph.with_suffix(".copy"))), None)

@@ -23,22 +23,26 @@ def test_a_texture_straight_from_a_file_leaves_nothing_behind(
     service: Service, photograph: Path, upload: Path, stored: Stored
 ) -> None:
     parameters = {"seed": 4}
-    sample = service.add_sample(Path(shutil.copy(photograph, photograph.with_suffix(".copy"))), None)
-    experiment = service.submit(NewExperiment("adsn", (NewInput(sample.id),), parameters), OWNER)
-    asyncio.run(service.wait(experiment.id, SECONDS))
-    expected = service.output(experiment.id, "texture")[1].read_bytes()
-    service.cancel_or_delete(experiment.id, OWNER)
-    picture, media_type = asyncio.run(service.synthesize([upload], method="adsn", crops=[None], parameters=parameters))
+    sample = service.samples.add(Path(shutil.copy(photograph, photograph.with_suffix(".copy"))), None)
+    experiment = service.submission.submit(NewExperiment("adsn", (NewInput(sample.id),), parameters), OWNER)
+    asyncio.run(service.watching.wait(experiment.id, SECONDS))
+    expected = service.outputs.get(experiment.id, "texture")[1].read_bytes()
+    service.experiments.cancel_or_delete(experiment.id, OWNER)
+    picture, media_type = asyncio.run(
+        service.transient.synthesize([upload], method="adsn", crops=[None], parameters=parameters)
+    )
     assert (picture, media_type) == (expected, "image/png")
     assert stored() == set()
-    assert sum(service.counts().values()) == 0
+    assert sum(service.experiments.counts().values()) == 0
 
 
 def test_a_refused_texture_straight_from_a_file_leaves_nothing_behind(
     service: Service, upload: Path, stored: Stored
 ) -> None:
     with pytest.raises(InvalidInputError):
-        asyncio.run(service.synthesize([upload], method="rpn", crops=[Rectangle(0, 0, 999, 9)], parameters={}))
+        asyncio.run(
+            service.transient.synthesize([upload], method="rpn", crops=[Rectangle(0, 0, 999, 9)], parameters={})
+        )
     assert stored() == set()
 
 
@@ -48,7 +52,7 @@ def test_a_caller_who_hangs_up_cancels_the_run(
     service = make_service()
 
     async def hanging_up() -> None:
-        work = asyncio.create_task(service.synthesize([upload], method="rpn", crops=[None], parameters={}))
+        work = asyncio.create_task(service.transient.synthesize([upload], method="rpn", crops=[None], parameters={}))
         while service.waiting == 0:
             await asyncio.sleep(0.005)
         work.cancel()
@@ -75,7 +79,7 @@ def test_a_caller_who_hangs_up_while_it_is_submitted_leaves_nothing_behind(
     monkeypatch.setattr(service._store, "add", slow_add)
 
     async def hanging_up() -> None:
-        work = asyncio.create_task(service.synthesize([upload], method="rpn", crops=[None], parameters={}))
+        work = asyncio.create_task(service.transient.synthesize([upload], method="rpn", crops=[None], parameters={}))
         assert await asyncio.to_thread(added.wait, SECONDS)
         work.cancel()
         asyncio.get_running_loop().call_soon(hung_up.set)
@@ -84,7 +88,7 @@ def test_a_caller_who_hangs_up_while_it_is_submitted_leaves_nothing_behind(
 
     asyncio.run(hanging_up())
     assert service.waiting == 0
-    assert sum(service.counts().values()) == 0
+    assert sum(service.experiments.counts().values()) == 0
     assert stored() == set()
 
 
@@ -92,7 +96,7 @@ def test_more_crops_than_files_are_refused_and_leave_nothing_behind(
     service: Service, upload: Path, stored: Stored
 ) -> None:
     with pytest.raises(InvalidInputError, match="more crops"):
-        asyncio.run(service.synthesize([upload], method="rpn", crops=[None, None], parameters={}))
+        asyncio.run(service.transient.synthesize([upload], method="rpn", crops=[None, None], parameters={}))
     assert not upload.exists()
     assert stored() == set()
 
@@ -101,7 +105,7 @@ def test_of_several_files_none_is_left_if_one_is_no_picture(service: Service, up
     broken = upload.with_name("broken")
     broken.write_bytes(b"no picture")
     with pytest.raises(UnsupportedFormatError):
-        asyncio.run(service.synthesize([upload, broken], method="rpn", crops=[], parameters={}))
+        asyncio.run(service.transient.synthesize([upload, broken], method="rpn", crops=[], parameters={}))
     assert not upload.exists()
     assert not broken.exists()
     assert stored() == set()

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from app.experiments.model import Snapshot, Status
-from app.experiments.watching import Following
+from app.experiments.watching import Watching
 
 RUNNING = SimpleNamespace(snapshot=lambda job: Snapshot(Status.RUNNING))  # an executor whose job never ends
 
@@ -16,11 +16,11 @@ def test_who_gives_up_while_the_job_moves_stops_waiting(turns):
     """Whatever the event loop does between the two, the cancellation is not lost."""
 
     async def given_up() -> bool:
-        following = Following(SimpleNamespace(), RUNNING)
-        waiting = asyncio.ensure_future(following.wait("job", float("inf")))
+        watching = Watching(SimpleNamespace(), RUNNING)
+        waiting = asyncio.ensure_future(watching.wait("job", float("inf")))
         for _ in range(8):
             await asyncio.sleep(0)
-        following.notify("job")
+        watching.notify("job")
         for _ in range(turns):
             await asyncio.sleep(0)
         waiting.cancel()

@@ -262,7 +262,7 @@ def gallery(tmp_path_factory: pytest.TempPathFactory) -> Iterator[httpx.Client]:
     with serving(create_app(settings, service)) as url:
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr("app.experiments.exhibition.exhibits", lambda: made)
-            assert service.catalogue.fill(threading.Event()).made == len(made) > 3
+            assert service.exhibition.fill(threading.Event()).made == len(made) > 3
         with httpx.Client(base_url=url, timeout=PATIENCE, headers={"Accept": "text/html"}) as client:
             yield client
 

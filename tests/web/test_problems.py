@@ -155,12 +155,13 @@ def test_a_form_that_cannot_be_read(site, path, content, headers, status):
 def test_an_unexpected_error_tells_nothing_and_is_logged(site, caplog):
     class Broken:
         ready = True
+        samples = property(lambda self: self)
 
         def start(self) -> None: ...
 
         def close(self) -> None: ...
 
-        def bundled_samples(self):
+        def bundled(self):
             raise RuntimeError("the password is swordfish")
 
     transport = httpx.ASGITransport(create_app(site.settings, Broken()), raise_app_exceptions=False)

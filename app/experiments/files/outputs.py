@@ -5,10 +5,11 @@ from pathlib import Path
 from typing import Literal, Protocol
 
 from app.errors import AppError, BusyError, InvalidInputError, NotFoundError
-from app.experiments.files.renditions import DERIVED, PNG, FilmFormat, Pictures, check_deep
+from app.experiments.files.renditions import DERIVED, PNG, FilmFormat, Renditions, check_deep
 from app.experiments.model import Experiment, Output, deep_job, deep_name
 from app.experiments.ports import BlobStore, Executor, ExperimentStore
-from app.experiments.watching import Following
+from app.experiments.queue import check_queue
+from app.experiments.watching import Watching
 from app.images.convert import Format, read_depth
 from app.methods.effects import possible_output, refuse_deep
 from app.methods.registry import method as method_named
@@ -59,7 +60,7 @@ class Outputs:
 
     Parameters
     ----------
-    store, blobs, executor, pictures, following
+    store, blobs, executor, renditions, watching
         Those of the service.
     queue_limit : int
         Jobs that may wait before another output at 16 bits is refused.
@@ -70,31 +71,41 @@ class Outputs:
         store: ExperimentStore,
         blobs: BlobStore,
         executor: Executor,
-        pictures: Pictures,
-        following: Following,
+        renditions: Renditions,
+        watching: Watching,
         *,
         queue_limit: int,
     ) -> None:
         self._store = store
         self._blobs = blobs
         self._executor = executor
-        self._pictures = pictures
-        self._following = following
+        self._renditions = renditions
+        self._watching = watching
         self._queue_limit = queue_limit
         self._failures: dict[str, str] = {}
 
-    def output(self, experiment_id: str, name: str) -> tuple[Output, Path]:
-        """An output's record and its file. Raises `NotFoundError`, also while it is not there yet."""
+    def get(self, experiment_id: str, name: str) -> tuple[Output, Path]:
+        """Find an output and its file. Raises `NotFoundError`, also while it is not there yet."""
         experiment = self._store.get(experiment_id)
         if name in DERIVED:
-            return self._pictures.derived(name, self._output(experiment, "crop"), self._output(experiment, "texture"))
+            return self._renditions.derive(name, self._output(experiment, "crop"), self._output(experiment, "texture"))
         output = self._output(experiment, name)
         return output, self._blobs.path(output.digest)
 
-    async def converted(
-        self, experiment_id: str, name: str, file_format: AnyFormat | None, depth: Literal[8, 16] | None
+    async def convert(
+        self, experiment_id: str, name: str, file_format: AnyFormat | None, depth: Literal[8, 16] | None = None
     ) -> tuple[Path, str]:
-        """An output in another format, and its media type; by default as it is stored, and WebM of a film."""
+        """Convert an output to another format and depth; its file and media type.
+
+        By default it is as it is stored, and of a video WebM. At 16 bits it is computed when first asked for.
+
+        Raises
+        ------
+        InvalidInputError
+            If the format or the output does not come at this depth.
+        BusyError
+            If the engine did not get to it soon enough; trying again later helps.
+        """
         experiment = await asyncio.to_thread(self._store.get, experiment_id)
         output = self._output(experiment, name)
         output = self._output(experiment, file_of(output, file_format or ("webm" if output.film else None)))
@@ -105,10 +116,10 @@ class Outputs:
             return self._blobs.path(output.digest), output.media_type
         assert file_format != "webm"  # `file_of` lets these through for films only
         assert file_format != "mp4"
-        return await asyncio.to_thread(self._pictures.converted, output, file_format or "png", depth)
+        return await asyncio.to_thread(self._renditions.convert, output, file_format or "png", depth)
 
-    def failed(self, job: str, failure: str) -> None:
-        """Remember why an output at 16 bits could not be made, for who waits for it."""
+    def record_failure(self, job: str, failure: str) -> None:
+        """Remember why an output at 16 bits could not be made, for the request that waits for it."""
         self._failures[job] = failure
 
     def _output(self, experiment: Experiment, name: str) -> Output:
@@ -130,11 +141,10 @@ class Outputs:
         if deep is not None:
             return deep
         if self._executor.snapshot(job) is None:
-            if self._executor.waiting >= self._queue_limit:
-                raise BusyError("Too many experiments wait already. Try again in a minute.")
+            check_queue(self._executor, self._queue_limit)
             self._failures.pop(job, None)
             self._executor.submit(job)
-        if not await self._following.left(job, DEEP_SECONDS):
+        if not await self._watching.wait_until_left(job, DEEP_SECONDS):
             raise BusyError(f"The {output.name} at 16 bits is still being computed. Try again in a minute.")
         deep = (await asyncio.to_thread(self._store.get, experiment.id)).output(name)
         if deep is None:

@@ -39,15 +39,15 @@ DERIVED = {
 PNG = "image/png"
 
 
-class Pictures:
+class Renditions:
     """Renditions of samples and conversions of outputs, under the digest of what they were made from."""
 
     def __init__(self, blobs: BlobStore, cache: FileCache) -> None:
         self._blobs = blobs
         self._cache = cache
 
-    def rendition(self, sample: Sample, size: int | None, frame: int = 0) -> tuple[Path, str]:
-        """The picture, of a video one frame: as it is stored, or smaller.
+    def image(self, sample: Sample, size: int | None, frame: int = 0) -> tuple[Path, str]:
+        """Make a picture, of a video one frame, that browsers show: as it is stored, or smaller; and its media type.
 
         A smaller one's longer side is at most the next of 256, 512, 1024 and 2048 pixels.
 
@@ -71,8 +71,8 @@ class Pictures:
         name = f"{_part(sample, frame)}.png"
         return self._cache.get(name, lambda: encode_png(read_frame(stored, frame, sample.width, sample.height)))
 
-    def film(self, sample: Sample, file_format: FilmFormat) -> tuple[Path, str]:
-        """A video as a file that plays; made when first asked for.
+    def video(self, sample: Sample, file_format: FilmFormat) -> tuple[Path, str]:
+        """Make a file that plays of a video, and its media type.
 
         MP4 plays everywhere. WebM has the pixels exactly as they are stored, if the film is not too long for that (see
         `app.images.video.writers`). Pixels that are not opaque lie on mid-grey.
@@ -93,8 +93,8 @@ class Pictures:
         name = f"{sample.digest}-{sample.height}-{sample.rate:g}.{file_format}"
         return self._cache.file(name, write), f"video/{file_format}"
 
-    def converted(self, output: Output, file_format: Format, depth: Literal[8, 16] | None = None) -> tuple[Path, str]:
-        """A picture in this format, and its media type; where 8 bits are asked for, with no more than those."""
+    def convert(self, output: Output, file_format: Format, depth: Literal[8, 16] | None = None) -> tuple[Path, str]:
+        """Convert a picture to this format, to 8 bits where those are asked for; its file and media type."""
         stored = self._blobs.path(output.digest)
         media_type = f"image/{file_format}"
         narrowed: Literal[8] | None = 8 if depth == 8 and read_depth(stored) == 16 else None
@@ -103,10 +103,10 @@ class Pictures:
         name = f"{output.digest}{'-8' if narrowed else ''}.{file_format}"
         return self._cache.get(name, lambda: convert(stored, file_format, narrowed)[0]), media_type
 
-    def derived(self, name: str, crop: Output, texture: Output) -> tuple[Output, Path]:
-        """One of the pictures that stand for an experiment in lists and elsewhere; made when first asked for.
+    def derive(self, name: str, crop: Output, texture: Output) -> tuple[Output, Path]:
+        """Make one of the pictures that stand for an experiment in lists and elsewhere.
 
-        Of a film it shows the first frame.
+        Of a video it shows the first frame.
         """
         if name in POSTERS.values():
             return self._poster(name, crop if name == POSTERS["crop"] else texture)

@@ -30,7 +30,7 @@ async def _followable(
     ] = None,
 ) -> None:
     """Answer errors before the stream begins, and 204 to who has seen its end: browsers then stop connecting."""
-    await run_in_threadpool(service.get, experiment_id)
+    await run_in_threadpool(service.experiments.get, experiment_id)
     if last_event_id == LAST_ID:
         raise HTTPException(204)
 
@@ -53,7 +53,7 @@ async def experiment_events(
     """
     status: Status | None = None
     number = 0
-    async with aclosing(service.watch(experiment_id)) as snapshots:
+    async with aclosing(service.watching.watch(experiment_id)) as snapshots:
         while snapshot := await unless_stopping(request, _next(snapshots)):
             data = {
                 "status": snapshot.status,

@@ -100,7 +100,7 @@ def require_json(request: Request) -> None:
 
 def record_of(request: Request, service: Service, experiment: Experiment) -> ExperimentRecord:
     """Write the record, as of now."""
-    snapshot = None if experiment.status.finished else service.snapshot(experiment.id)
+    snapshot = None if experiment.status.finished else service.watching.snapshot(experiment.id)
     return ExperimentRecord.of(experiment, snapshot, base_url(request))
 
 
@@ -119,7 +119,7 @@ _CREATED = {
 )
 async def check_experiment(body: ExperimentBody, service: ServiceDep) -> PlanRecord:
     """Say what it would make and how much memory it would take, or what is wrong with it; nothing is run."""
-    return PlanRecord(**vars(await run_in_threadpool(lambda: service.check(body.requested()))))
+    return PlanRecord(**vars(await run_in_threadpool(lambda: service.submission.check(body.requested()))))
 
 
 @router.post(
@@ -155,12 +155,12 @@ async def submit_experiment(
     """
     owner = token or new_token()
     try:
-        experiment = await run_in_threadpool(service.submit, body.requested(), owner)
+        experiment = await run_in_threadpool(service.submission.submit, body.requested(), owner)
     except (NotFoundError, DeletedError) as error:  # this address exists; what does not is a sample
         raise InvalidInputError(error.message, "inputs") from None
     seconds = wait_seconds(prefer)
     if seconds is not None:
-        experiment = await unless_stopping(request, service.wait(experiment.id, seconds)) or experiment
+        experiment = await unless_stopping(request, service.watching.wait(experiment.id, seconds)) or experiment
         response.headers["Preference-Applied"] = f"wait={seconds}"
     record = await run_in_threadpool(record_of, request, service, experiment)
     response.status_code = 201 if record.status.finished else 202
@@ -197,7 +197,7 @@ def list_experiments(
     """Public experiments that succeeded, newest first."""
     if method is not None and method not in METHODS:
         raise InvalidInputError(f"There is no method of this name. The methods are: {', '.join(METHODS)}.", "method")
-    page = service.page(limit=limit, cursor=cursor, method=method)
+    page = service.experiments.page(limit=limit, cursor=cursor, method=method)
     following = None
     if page.cursor is not None:
         address = request.url.include_query_params(cursor=page.cursor)
@@ -216,7 +216,7 @@ def list_experiments(
 )
 def read_experiment(experiment_id: ExperimentId, request: Request, service: ServiceDep) -> ExperimentRecord:
     """Where it stands, and its outputs once it succeeded."""
-    return record_of(request, service, service.get(experiment_id))
+    return record_of(request, service, service.experiments.get(experiment_id))
 
 
 @router.patch(
@@ -231,8 +231,8 @@ def change_experiment(
     experiment_id: ExperimentId, body: ListedBody, request: Request, service: ServiceDep, token: TokenDep
 ) -> ExperimentRecord:
     """For its owner and the operator."""
-    service.set_listed(experiment_id, body.listed, token)
-    return record_of(request, service, service.get(experiment_id))
+    service.experiments.set_listed(experiment_id, body.listed, token)
+    return record_of(request, service, service.experiments.get(experiment_id))
 
 
 @router.delete(
@@ -251,9 +251,9 @@ def change_experiment(
 )
 def delete_experiment(experiment_id: ExperimentId, request: Request, service: ServiceDep, token: TokenDep) -> Response:
     """For its owner and the operator."""
-    service.cancel_or_delete(experiment_id, token)
+    service.experiments.cancel_or_delete(experiment_id, token)
     try:
-        record = record_of(request, service, service.get(experiment_id))
+        record = record_of(request, service, service.experiments.get(experiment_id))
     except DeletedError:
         return Response(status_code=204)
     return Response(record.model_dump_json(exclude_unset=True), 202, media_type="application/json")

@@ -74,15 +74,15 @@ async def experiment_output(
     download: Annotated[bool, Query(description="Ask browsers to save it instead of showing it.")] = False,
 ) -> Response:
     """Supports `Range`, `If-None-Match` and `HEAD`."""
-    experiment = await run_in_threadpool(service.get, experiment_id)
-    output, path = await run_in_threadpool(service.output, experiment_id, name)
+    experiment = await run_in_threadpool(service.experiments.get, experiment_id)
+    output, path = await run_in_threadpool(service.outputs.get, experiment_id, name)
     media_type, tag = output.media_type, output.digest
     cache = FOREVER if experiment.listed else FOREVER_FOR_ME
     if format is not None or depth is not None:
         tag = f"{tag}-{format or ''}{depth or ''}"
         if matches(request, tag):
             return not_modified(tag, cache)
-        path, media_type = await service.converted(experiment_id, name, format, DEPTHS.get(depth))
+        path, media_type = await service.outputs.convert(experiment_id, name, format, DEPTHS.get(depth))
     return file_response(
         request,
         path,
@@ -109,12 +109,12 @@ async def experiment_output(
 )
 def experiment_zip(experiment_id: ExperimentId, request: Request, service: ServiceDep) -> Response:
     """Pack the pictures as they are, with `record.json`, which says how they were made."""
-    experiment = service.get(experiment_id)
+    experiment = service.experiments.get(experiment_id)
     if experiment.status is not Status.SUCCEEDED:
         raise ConflictError(f"The experiment has no outputs: it is {experiment.status}.")
     record = record_of(request, service, experiment).model_dump(mode="json", exclude_unset=True)
     files = [
-        (f"{output.name}{SUFFIXES.get(output.media_type, '')}", service.output(experiment_id, output.name)[1])
+        (f"{output.name}{SUFFIXES.get(output.media_type, '')}", service.outputs.get(experiment_id, output.name)[1])
         for output in experiment.outputs
         if output.listed
     ]

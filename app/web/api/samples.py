@@ -48,7 +48,7 @@ _FORM = {
 @router.get("", summary="The bundled samples")
 def list_samples(request: Request, service: ServiceDep) -> SampleList:
     """List them. Uploaded samples are not listed: their ids are known to who uploaded them."""
-    return SampleList(samples=[SampleRecord.of(sample, base_url(request)) for sample in service.bundled_samples()])
+    return SampleList(samples=[SampleRecord.of(sample, base_url(request)) for sample in service.samples.bundled()])
 
 
 @router.post(
@@ -72,7 +72,7 @@ async def upload_sample(request: Request, response: Response, service: ServiceDe
         if form.fields:
             name = next(iter(form.fields))
             raise InvalidInputError(f"The form has one field, 'file'; {name!r} is not known.", name)
-        sample = await in_upload_thread(request, service.add_sample, form.file, token)
+        sample = await in_upload_thread(request, service.samples.add, form.file, token)
     record = SampleRecord.of(sample, base_url(request))
     response.headers["Location"] = record.url
     return record
@@ -81,7 +81,7 @@ async def upload_sample(request: Request, response: Response, service: ServiceDe
 @router.get("/{sample_id}", summary="The record of a sample", responses=problems(404))
 def read_sample(sample_id: SampleId, request: Request, service: ServiceDep) -> SampleRecord:
     """Its size, depth and channels, and of a video how many frames it has."""
-    return SampleRecord.of(service.sample(sample_id), base_url(request))
+    return SampleRecord.of(service.samples.get(sample_id), base_url(request))
 
 
 def _file(description: str, *media_types: str) -> dict[int | str, dict[str, Any]]:
@@ -113,8 +113,8 @@ async def sample_image(
     frame: Annotated[int, Query(ge=0, le=FAR, description="Of a video: which frame, from 0.")] = 0,
 ) -> Response:
     """Upright and in sRGB; at its own size if none is asked for. Of a video it is one frame."""
-    sample = await run_in_threadpool(service.sample, sample_id)
-    path, media_type = await in_upload_thread(request, service.rendition, sample_id, size, frame)
+    sample = await run_in_threadpool(service.samples.get, sample_id)
+    path, media_type = await in_upload_thread(request, service.renditions.image, sample, size, frame)
     tag = f"{sample.digest}-{frame}-{path.stat().st_size}"
     return file_response(
         request, path, media_type, tag=tag, filename=f"{sample_id}{SUFFIXES[media_type]}", cache=FOREVER
@@ -142,8 +142,8 @@ async def sample_video(
     ] = "mp4",
 ) -> Response:
     """Upright, in sRGB and without sound; a sample that is a still picture has none."""
-    sample = await run_in_threadpool(service.sample, sample_id)
-    path, media_type = await in_upload_thread(request, service.film, sample_id, file_format)
+    sample = await run_in_threadpool(service.samples.get, sample_id)
+    path, media_type = await in_upload_thread(request, service.renditions.video, sample, file_format)
     tag = f"{sample.digest}-{sample.height}-{sample.rate:g}-{file_format}"
     return file_response(
         request, path, media_type, tag=tag, filename=f"{sample_id}{SUFFIXES[media_type]}", cache=FOREVER

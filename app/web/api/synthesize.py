@@ -129,7 +129,7 @@ async def synthesize(request: Request, service: ServiceDep) -> Response:
     """
     async with receive_form(request, FILES) as form:
         wanted = _wanted(request, form)
-        running = asyncio.ensure_future(service.synthesize(**wanted))
+        running = asyncio.ensure_future(service.transient.synthesize(**wanted))
         hung_up = asyncio.ensure_future(_hung_up(request))
         try:
             await asyncio.wait({running, hung_up}, return_when=asyncio.FIRST_COMPLETED)

@@ -25,7 +25,7 @@ class _ServiceCollector(Collector):
         experiments = GaugeMetricFamily(
             "microtexture_experiments", "Experiments that are kept, by status.", labels=["status"]
         )
-        counts = self.service.counts()
+        counts = self.service.experiments.counts()
         for status in Status:
             experiments.add_metric([status], counts.get(status, 0))
         yield experiments

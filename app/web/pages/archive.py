@@ -24,7 +24,7 @@ def archive(
 ) -> Response:
     """List what is public; ``trail`` holds the cursors of the pages passed, for keyset paging only goes onwards."""
     chosen = method if method in METHODS else None
-    page = service.page(limit=PER_PAGE, cursor=cursor, method=chosen)
+    page = service.experiments.page(limit=PER_PAGE, cursor=cursor, method=chosen)
     passed = [part for part in trail.split(" ") if part]
 
     def address(to: str | None, through: list[str]) -> str:

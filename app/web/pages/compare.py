@@ -35,7 +35,7 @@ def compare(
     tiles: Tiles = 2,
 ) -> Response:
     """Show two experiments beside the sample of the first; one that still runs shows its progress until it is there."""
-    both = [service.get(first_id), service.get(second_id)]
+    both = [service.experiments.get(first_id), service.experiments.get(second_id)]
     first, second = both
     names = [label(experiment.method) for experiment in both]
     samples = dict.fromkeys(subject(service, experiment) for experiment in both)

@@ -50,7 +50,7 @@ def experiment_page(
     view: View = "side",
     tiles: Tiles = 2,
 ) -> Response:
-    experiment = service.get(experiment_id)
+    experiment = service.experiments.get(experiment_id)
     base = base_url(request)
     context = common_context(service, experiment, token) | {
         "title": f"{label(experiment.method)} of {subject(service, experiment)}",
@@ -81,11 +81,11 @@ def common_context(service: Service, experiment: Experiment, token: str | None) 
     declared = method(experiment.method)
     return {
         "experiment": experiment,
-        "snapshot": service.snapshot(experiment.id),
+        "snapshot": service.watching.snapshot(experiment.id),
         "method": declared,
         "sources": _sources(service, experiment),
         "subject": subject(service, experiment),
-        "owned": service.owns(experiment, token),
+        "owned": service.experiments.owns(experiment, token),
         "hidden": not experiment.listed and not is_exhibit(experiment),
         "rows": list(parameter_rows(experiment)),
         "edit_url": form_url(experiment),
@@ -118,7 +118,7 @@ class Source:
 
 
 def _sources(service: Service, experiment: Experiment) -> list[Source]:
-    found = [service.sample(source.sample) for source in experiment.inputs]
+    found = [service.samples.get(source.sample) for source in experiment.inputs]
     names = [sample.title or ("A video" if sample.moving else "A photograph") for sample in found]
     parts = zip(input_titles(experiment), found, names, experiment.inputs, strict=True)
     return [Source(title, sample, name, of.crop, of.frames) for title, sample, name, of in parts]
@@ -210,7 +210,7 @@ def again(
 ) -> Response:
     """Run the same crop once more: with a new seed, or by another method at the same phase."""
     key = pressed(press)
-    experiment = service.get(experiment_id)
+    experiment = service.experiments.get(experiment_id)
     known = method(name).params.model_fields
     parameters = {key: value for key, value in experiment.parameters.items() if key in known}
     if seed == "new":
@@ -218,7 +218,7 @@ def again(
     inputs = tuple(NewInput(source.sample, source.crop, source.frames) for source in experiment.inputs)
     owner = owner_of_press(token, key)
     listed = experiment.listed or is_exhibit(experiment)
-    run = service.submit(NewExperiment(name, inputs, parameters, listed), owner, key)
+    run = service.submission.submit(NewExperiment(name, inputs, parameters, listed), owner, key)
     other = name != experiment.method
     response = RedirectResponse(
         f"/compare/{experiment.id}/{run.id}" if other else f"/experiments/{run.id}", HTTP_303_SEE_OTHER
@@ -230,14 +230,14 @@ def again(
 @router.post("/experiments/{experiment_id}/cancel")
 def cancel(experiment_id: str, service: ServiceDep, token: TokenDep) -> Response:
     """Cancel what waits or runs; one that finished in the meantime stays, for nobody asked to delete it."""
-    if not service.get(experiment_id).status.finished:
-        service.cancel_or_delete(experiment_id, token)
+    if not service.experiments.get(experiment_id).status.finished:
+        service.experiments.cancel_or_delete(experiment_id, token)
     return RedirectResponse(f"/experiments/{experiment_id}", HTTP_303_SEE_OTHER)
 
 
 @router.post("/experiments/{experiment_id}/delete")
 def delete(experiment_id: str, service: ServiceDep, token: TokenDep) -> Response:
-    service.cancel_or_delete(experiment_id, token)
+    service.experiments.cancel_or_delete(experiment_id, token)
     return RedirectResponse("/archive", HTTP_303_SEE_OTHER)
 
 
@@ -245,5 +245,5 @@ def delete(experiment_id: str, service: ServiceDep, token: TokenDep) -> Response
 def set_listed(
     experiment_id: str, listing: Literal["list", "unlist"], service: ServiceDep, token: TokenDep
 ) -> Response:
-    service.set_listed(experiment_id, listing == "list", token)
+    service.experiments.set_listed(experiment_id, listing == "list", token)
     return RedirectResponse(f"/experiments/{experiment_id}", HTTP_303_SEE_OTHER)

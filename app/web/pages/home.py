@@ -39,8 +39,8 @@ def _home(
     context = {
         "limit": settings.max_upload_bytes,
         "longest": {"seconds": settings.max_film_seconds, "frames": settings.max_film_frames},
-        "samples": service.bundled_samples(),
-        "newest": service.page(limit=NEWEST).experiments,
+        "samples": service.samples.bundled(),
+        "newest": service.experiments.page(limit=NEWEST).experiments,
         "upload_error": error,
     }
     return render(request, "home.html", context, status)
@@ -53,7 +53,7 @@ async def upload(request: Request, service: ServiceDep, settings: SettingsDep, t
         async with receive_form(request) as form:
             if form.file is None:
                 raise InvalidInputError(NOTHING_CHOSEN, "file")
-            sample = await in_upload_thread(request, service.add_sample, form.file, owner)
+            sample = await in_upload_thread(request, service.samples.add, form.file, owner)
     except AppError as error:
         return await run_in_threadpool(_home, request, service, settings, error.message, status_of(error))
     response = RedirectResponse(f"/samples/{sample.id}", HTTP_303_SEE_OTHER)

@@ -75,7 +75,7 @@ def _pair(declared: Method) -> Exhibit:
 def _example(service: Service, declared: Method) -> Experiment | None:
     """The method's first exhibit, not begun; None until its sample has come in."""
     try:
-        return service.catalogue.prepared(teaser(declared))
+        return service.exhibition.prepare(teaser(declared))
     except AppError:
         return None
 

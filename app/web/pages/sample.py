@@ -40,16 +40,16 @@ router = APIRouter(include_in_schema=False)
 
 @router.get("/samples/{sample_id}")
 def sample_page(request: Request, sample_id: str, service: ServiceDep, settings: SettingsDep) -> Response:
-    sample = service.sample(sample_id)
+    sample = service.samples.get(sample_id)
     choices = _choices(service, settings)
     return _sample(request, settings, sample, choices, from_query(sample, choices, request.query_params))
 
 
 def _choices(service: Service, settings: Settings) -> Choices:
-    offered = tuple(service.bundled_samples())
+    offered = tuple(service.samples.bundled())
     kept = {sample.id for sample in offered}  # an upload may have any id, and says nothing of the catalogue
     entries = {entry.id: entry for entry in bundled(settings.samples_dir) if entry.id in kept}
-    return Choices(offered, entries, service.sample)
+    return Choices(offered, entries, service.samples.get)
 
 
 def _sample(
@@ -80,7 +80,7 @@ async def submit(request: Request, service: ServiceDep, settings: SettingsDep, t
         owner = owner_of_press(token, pressed(values.get("press", "")))
         for name, path in form.files.items():
             try:
-                values[names[name]] = (await in_upload_thread(request, service.add_sample, path, owner)).id
+                values[names[name]] = (await in_upload_thread(request, service.samples.add, path, owner)).id
             except AppError as error:
                 errors[names[name]] = error.message
         return await run_in_threadpool(_submit, request, service, settings, token or owner, values, errors)
@@ -97,12 +97,12 @@ async def check(request: Request, service: ServiceDep, settings: SettingsDep) ->
 
 
 def _check(service: Service, settings: Settings, values: dict[str, str]) -> Response:
-    sample = service.sample(values.get("sample", ""))
+    sample = service.samples.get(values.get("sample", ""))
     submission = read_form(sample, _choices(service, settings), values)
     if submission.request is None:
         return JSONResponse({"errors": submission.draft.errors})
     try:
-        return JSONResponse({"errors": {}, "plan": asdict(service.check(submission.request))})
+        return JSONResponse({"errors": {}, "plan": asdict(service.submission.check(submission.request))})
     except AppError as error:
         return JSONResponse({"errors": with_error(submission, method(submission.request.method), error).errors})
 
@@ -115,7 +115,7 @@ def _submit(
     values: dict[str, str],
     errors: dict[str, str],
 ) -> Response:
-    sample = service.sample(values.get("sample", ""))
+    sample = service.samples.get(values.get("sample", ""))
     choices = _choices(service, settings)
     if errors:
         return _sample(request, settings, sample, choices, Draft(values, errors, frozenset(errors)), 422)
@@ -127,11 +127,11 @@ def _submit(
     press = pressed(values.get("press", ""))
     owner = owner_of_press(token, press)
     try:
-        experiment = service.submit(submission.request, owner, press)
+        experiment = service.submission.submit(submission.request, owner, press)
     except AppError as error:
         draft = with_error(submission, method(submission.request.method), error)
         with suppress(AppError):
-            service.check(submission.request)
+            service.submission.check(submission.request)
             draft = replace(draft, lasting=frozenset(draft.errors))
         return _sample(request, settings, sample, choices, draft, status_of(error))
     response = RedirectResponse(f"/experiments/{experiment.id}", HTTP_303_SEE_OTHER)

@@ -61,7 +61,7 @@ def form_structure(service: Service, sample: Sample, values: Mapping[str, str]) 
     with suppress(InvalidInputError, ValueError):
         crop = Rectangle.parse(",".join(values.get(name, "") for name in crop_names(1)))
         first = values.get(time_names(1)[0], "") if sample.moving else ""
-        return service.structure(sample.id, crop, frame=whole(first) if first else 0)
+        return service.meter.structure(sample, crop, frame=whole(first) if first else 0)
     return None
 
 
@@ -92,9 +92,9 @@ def _photographs(service: Service, settings: Settings) -> list[Measured]:
     entries = {entry.id: entry for entry in bundled(settings.samples_dir) if entry.kind not in ("scene", "moving")}
     return [
         Measured(sample, entry.title, entry.crop, delta)
-        for sample in service.bundled_samples()
+        for sample in service.samples.bundled()
         if (entry := entries.get(sample.id)) is not None
-        and (delta := service.structure(sample.id, entry.crop).delta) is not None
+        and (delta := service.meter.structure(sample, entry.crop).delta) is not None
     ]
 
 

@@ -44,7 +44,7 @@ class Shown:
 
 def shown(service: Service, exhibit: Exhibit) -> list[Shown]:
     """The pictures of one exhibit, in its order."""
-    made = service.catalogue.find(exhibit)
+    made = service.exhibition.find(exhibit)
     if made is None or made.status is not Status.SUCCEEDED:
         return _standing_in(service, exhibit, made)
     change = form_url(made)
@@ -122,7 +122,7 @@ def _deltas(experiment: Experiment) -> dict[str, float]:
 def _standing_in(service: Service, exhibit: Exhibit, made: Experiment | None) -> list[Shown]:
     """The samples' crops, where they are on show, and one place for all that is not there yet."""
     try:
-        experiment = service.catalogue.prepared(exhibit)
+        experiment = service.exhibition.prepare(exhibit)
     except AppError:
         return [Shown(label(exhibit.method), "", "", 256, 256, state="Its sample is not here yet")]
     page = f"/experiments/{made.id}" if made is not None else ""
@@ -133,7 +133,7 @@ def _standing_in(service: Service, exhibit: Exhibit, made: Experiment | None) ->
         page,
         *size,
         change=form_url(experiment),
-        state=_state(made, service.catalogue.making),
+        state=_state(made, service.exhibition.making),
     )
     return [*_crops(service, exhibit, experiment), texture]
 
@@ -142,7 +142,7 @@ def _crops(service: Service, exhibit: Exhibit, experiment: Experiment) -> Iterat
     for number, source in enumerate(experiment.inputs, 1):
         name = CROP if number == 1 else f"{CROP}-{number}"
         if name in exhibit.show:
-            sample = service.sample(source.sample)
+            sample = service.samples.get(source.sample)
             crop = (sample.id, sample.width, sample.height, source.crop)
             title, size = _input_title(exhibit, name), (source.crop.width, source.crop.height)
             yield Shown(title, "", f"/samples/{sample.id}", *size, crop=crop, leads=number == 1)

@@ -21,14 +21,14 @@ from tests.experiments.running import a_request, finished
 
 def test_the_texture_at_16_bits_is_the_same_one_and_made_once(service: Service, sample: Sample) -> None:
     experiment = finished(service, a_request(sample))
-    path, media_type = asyncio.run(service.converted(experiment.id, "texture", "png", 16))
+    path, media_type = asyncio.run(service.outputs.convert(experiment.id, "texture", "png", 16))
     deep = imagecodecs.png_decode(path.read_bytes())
-    shallow = imagecodecs.png_decode(service.output(experiment.id, "texture")[1].read_bytes())
+    shallow = imagecodecs.png_decode(service.outputs.get(experiment.id, "texture")[1].read_bytes())
     assert (deep.dtype, media_type) == (np.uint16, "image/png")
     assert np.abs(deep / 257.0 - shallow).max() <= 0.5 + 1e-3  # 8 bits are the 16 rounded
-    assert asyncio.run(service.converted(experiment.id, "texture", "png", 16))[0] == path
-    assert [output.name for output in service.get(experiment.id).outputs].count(".texture-16") == 1
-    tiff, _ = asyncio.run(service.converted(experiment.id, "texture", "tiff", 16))
+    assert asyncio.run(service.outputs.convert(experiment.id, "texture", "png", 16))[0] == path
+    assert [output.name for output in service.experiments.get(experiment.id).outputs].count(".texture-16") == 1
+    tiff, _ = asyncio.run(service.outputs.convert(experiment.id, "texture", "tiff", 16))
     assert np.array_equal(imagecodecs.imread(tiff), deep)
 
 
@@ -36,34 +36,34 @@ def test_the_texture_at_16_bits_is_the_same_one_and_made_once(service: Service, 
 def test_what_has_no_16_bits_says_so(service: Service, sample: Sample, name: str, file_format: Any) -> None:
     experiment = finished(service, a_request(sample))
     with pytest.raises(InvalidInputError, match=r"(16|8) bits") as refusal:
-        asyncio.run(service.converted(experiment.id, name, file_format, 16))
+        asyncio.run(service.outputs.convert(experiment.id, name, file_format, 16))
     assert refusal.value.field == "depth"
 
 
 @pytest.mark.parametrize("file_format", ["png", "jpeg", "webp", "tiff"])
 def test_outputs_come_in_every_format_and_are_kept(service: Service, sample: Sample, file_format: Any) -> None:
     experiment = finished(service, a_request(sample))
-    path, media_type = asyncio.run(service.converted(experiment.id, "texture", file_format))
+    path, media_type = asyncio.run(service.outputs.convert(experiment.id, "texture", file_format))
     assert media_type == f"image/{file_format}"
     assert Image.open(path).format == file_format.upper()
-    assert asyncio.run(service.converted(experiment.id, "texture", file_format)) == (path, media_type)
+    assert asyncio.run(service.outputs.convert(experiment.id, "texture", file_format)) == (path, media_type)
 
 
 def test_an_output_that_is_not_there_says_what_is(service: Service, sample: Sample) -> None:
     experiment = finished(service, a_request(sample))
     with pytest.raises(NotFoundError, match="texture, crop"):
-        service.output(experiment.id, "nothing")
+        service.outputs.get(experiment.id, "nothing")
 
 
 def test_the_full_rendition_is_the_stored_file_and_small_ones_are_bounded(service: Service, tmp_path: Path) -> None:
     pixels = np.random.default_rng(2).integers(0, 256, (300, 600, 3), dtype=np.uint8)
     Image.fromarray(pixels).save(tmp_path / "large.png")
-    sample = service.add_sample(tmp_path / "large.png", None)
-    full, media_type = service.rendition(sample.id, None)
+    sample = service.samples.add(tmp_path / "large.png", None)
+    full, media_type = service.renditions.image(sample, None)
     assert media_type == "image/png"
     assert np.array_equal(imagecodecs.png_decode(full.read_bytes()), pixels)
-    small, media_type = service.rendition(sample.id, 200)
+    small, media_type = service.renditions.image(sample, 200)
     assert media_type == "image/jpeg"
     assert Image.open(small).size == (256, 128)
     shutil.rmtree(small.parent)
-    assert service.rendition(sample.id, 200)[0].exists()
+    assert service.renditions.image(sample, 200)[0].exists()

@@ -140,17 +140,17 @@ def test_a_form_without_a_file_is_refused(site):
 
 def test_nothing_of_it_is_kept(serve, tmp_path, picture):
     with serve(tmp_path) as site:
-        before = site.service.counts()
+        before = site.service.experiments.counts()
         assert send(site, picture()).status_code == 200
         assert send(site, picture(), alpha="9").status_code == 422
-        assert site.service.counts() == before
+        assert site.service.experiments.counts() == before
         assert site.client.get("/api/v1/experiments").json()["experiments"] == []
         assert site.incoming == []
 
 
 def test_hanging_up_cancels_the_run(site, picture, until):
     def running() -> int:
-        counts = site.service.counts()
+        counts = site.service.experiments.counts()
         return counts.get("running", 0) + counts.get("queued", 0)
 
     until(lambda: running() == 0)

@@ -230,7 +230,7 @@ def test_showing_another_sample_keeps_the_time_ranges(site: Any, clip: str) -> N
 
 
 def test_a_check_says_what_would_be_made_and_runs_nothing(site: Any, clip: str) -> None:
-    before = site.service.counts()
+    before = site.service.experiments.counts()
     form = FORM | SWITCHES | {"sample": clip, "method": MOVING, "size": "2", "frames": "8"}
     answer = site.client.post("/experiments/check", data=form).json()
     assert answer["errors"] == {}
@@ -240,7 +240,7 @@ def test_a_check_says_what_would_be_made_and_runs_nothing(site: Any, clip: str) 
         "frames": 8,
     }
     assert answer["plan"]["memory"] < answer["plan"]["memory_limit"]
-    assert site.service.counts() == before
+    assert site.service.experiments.counts() == before
 
 
 def test_a_check_says_what_is_wrong_with_all_of_the_form(site: Any, clip: str) -> None:

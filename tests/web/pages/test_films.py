@@ -180,7 +180,7 @@ def test_a_method_s_page_says_what_its_inputs_are(site: Any) -> None:
 
 def test_a_figure_plays_a_film_when_asked_and_a_card_shows_its_first_frame(site: Any, films: dict[str, Any]) -> None:
     """Nothing of it is loaded before; its experiment is one click away all the same."""
-    made = site.service.get(films["id"])
+    made = site.service.experiments.get(films["id"])
     output = made.output("texture")
     assert output is not None
     entry = Shown(

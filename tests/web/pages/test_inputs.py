@@ -136,10 +136,10 @@ def test_a_wrong_address_offers_some_sample_and_no_crop(site: Any, said: str) ->
 def test_showing_what_was_chosen_keeps_the_rest_of_the_form(site: Any, other: str) -> None:
     """The button that does so without a script; it runs nothing."""
     typed = FORM | {"input-2.sample": other, "mix.weights": "1,3", "size": "free", "width": "50", "show": "2"}
-    before = site.service.counts()
+    before = site.service.experiments.counts()
     answer = site.client.post("/experiments", data=typed)
     assert answer.status_code == 303
-    assert site.service.counts() == before
+    assert site.service.experiments.counts() == before
     text = site.client.get(answer.headers["location"]).text
     assert chosen(text, 2) == other
     assert f'src="/api/v1/samples/{other}/image' in text

@@ -121,7 +121,7 @@ def test_the_command_line_takes_the_options_of_its_snippet(method: Method) -> No
 
 def run_snippet(site: Any, record: dict[str, Any], language: str, directory: Path) -> None:
     """Run it as it stands; it writes the texture of the experiment."""
-    text = texts(site.service.get(record["id"]), site.url)[language]
+    text = texts(site.service.experiments.get(record["id"]), site.url)[language]
     command = [sys.executable, "-c", text] if language == "Python" else ["bash", "-euc", text]
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
     environment = {**os.environ, "PATH": path}

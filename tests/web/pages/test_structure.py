@@ -19,7 +19,7 @@ def get(site, **query):
 
 def test_it_answers_with_the_index_its_words_and_what_was_measured(site):
     answer = get(site, crop="8,8,32,40").json()
-    found = site.service.structure("gravel_gray", Rectangle(8, 8, 32, 40))
+    found = site.service.meter.structure(site.service.samples.get("gravel_gray"), Rectangle(8, 8, 32, 40))
     assert answer == {
         "delta": pytest.approx(found.delta, abs=1e-4),
         "z": pytest.approx(found.z, abs=1e-2),
@@ -75,7 +75,7 @@ def test_an_unknown_sample_is_not_found(site):
 
 def test_the_page_places_the_photographs_and_explains_the_index_without_a_script(site):
     page = site.client.get("/structure")
-    delta = site.service.structure("gravel_gray", Rectangle(8, 8, 32, 32)).delta
+    delta = site.service.meter.structure(site.service.samples.get("gravel_gray"), Rectangle(8, 8, 32, 32)).delta
     assert page.status_code == 200
     assert "<script" not in page.text
     assert 'href="/samples/gravel_gray?crop.x=8&amp;crop.y=8&amp;crop.width=32&amp;crop.height=32"' in page.text
@@ -109,7 +109,7 @@ def test_a_picture_of_a_few_pixels_has_words_and_no_number():
 
 def test_a_crop_of_a_few_pixels_has_words_without_a_script_too(site):
     part = TEMPLATES.env.get_template("_partials/meter.html")
-    said = part.render(sample=site.service.sample("gravel_gray"), structure=Index(None, None))
+    said = part.render(sample=site.service.samples.get("gravel_gray"), structure=Index(None, None))
     assert 'class="structure unknown"' in said
     assert "Too small to tell" in said
     assert " hidden" not in said.split(">")[0]
@@ -118,14 +118,14 @@ def test_a_crop_of_a_few_pixels_has_words_without_a_script_too(site):
 @pytest.mark.parametrize("structure", [None, Index(0.1, 1.0)])
 def test_the_crop_s_meter_shows_what_the_page_knows_and_hides_until_it_knows(site, structure):
     part = TEMPLATES.env.get_template("_partials/meter.html")
-    said = part.render(sample=site.service.sample("gravel_gray"), structure=structure)
+    said = part.render(sample=site.service.samples.get("gravel_gray"), structure=structure)
     assert (" hidden" in said) == (structure is None)
     assert ("Structured: random" in said) == (structure is not None)
     assert 'data-sample="gravel_gray"' in said
 
 
 def test_pictures_on_the_scale_do_not_overlap_and_stand_at_their_index(site):
-    sample = site.service.sample("gravel_gray")
+    sample = site.service.samples.get("gravel_gray")
     deltas = np.sort(np.random.default_rng(0).uniform(-0.01, 0.45, 60))
     places = placed([Measured(sample, "", Rectangle(0, 0, 9, 9), delta) for delta in deltas])
     for place in places:
