@@ -12,7 +12,7 @@ from starlette.exceptions import HTTPException
 from app.experiments.model import Snapshot, Status
 from app.web.api.experiments import ExperimentId
 from app.web.api.openapi import problems
-from app.web.api.records import API
+from app.web.api.records import API, ProgressRecord
 from app.web.deps import ServiceDep
 from app.web.shutdown import unless_stopping
 
@@ -55,13 +55,7 @@ async def experiment_events(
     number = 0
     async with aclosing(service.watching.watch(experiment_id)) as snapshots:
         while snapshot := await unless_stopping(request, _next(snapshots)):
-            data = {
-                "status": snapshot.status,
-                "position": snapshot.position,
-                "progress": snapshot.fraction,
-                "stage": snapshot.stage,
-                "elapsed": round(snapshot.elapsed, 3),
-            }
+            data = ProgressRecord.of(snapshot).model_dump(mode="json")
             names = ["progress"] if snapshot.status is status else ["progress", "status"]
             status = snapshot.status
             for name in names:

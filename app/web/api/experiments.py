@@ -119,7 +119,7 @@ _CREATED = {
 )
 async def check_experiment(body: ExperimentBody, service: ServiceDep) -> PlanRecord:
     """Say what it would make and how much memory it would take, or what is wrong with it; nothing is run."""
-    return PlanRecord(**vars(await run_in_threadpool(lambda: service.submission.check(body.requested()))))
+    return PlanRecord.made_of(await run_in_threadpool(lambda: service.submission.check(body.requested())))
 
 
 @router.post(

@@ -1,7 +1,7 @@
 """The JSON that the API answers with, and how domain objects become it."""
 
 from datetime import datetime
-from typing import Any, Literal
+from typing import Any, Literal, Self
 
 from pydantic import BaseModel, Field
 
@@ -15,7 +15,17 @@ from app.web.api.environment import EnvironmentRecord
 API = "/api/v1"
 
 
-class SampleRecord(BaseModel):
+class Record(BaseModel):
+    """A JSON answer that is made of a domain object's attributes of the same names."""
+
+    @classmethod
+    def made_of(cls, source: object, **others: object) -> Self:
+        """Take ``others`` as they are, and the attributes of ``source`` for the rest; what it lacks stays unset."""
+        names = [name for name in cls.model_fields if name not in others and hasattr(source, name)]
+        return cls.model_validate({name: getattr(source, name) for name in names} | others, from_attributes=True)
+
+
+class SampleRecord(Record):
     """A sample."""
 
     id: str
@@ -35,21 +45,7 @@ class SampleRecord(BaseModel):
     @classmethod
     def of(cls, sample: Sample, base: str) -> "SampleRecord":
         url = f"{base}{API}/samples/{sample.id}"
-        return cls(
-            id=sample.id,
-            width=sample.width,
-            height=sample.height,
-            channels=sample.channels,
-            depth=sample.depth,
-            frames=sample.frames,
-            rate=sample.rate,
-            media_type=sample.media_type,
-            title=sample.title,
-            transparent=sample.transparent,
-            created_at=sample.created_at,
-            url=url,
-            image=f"{url}/image",
-        )
+        return cls.made_of(sample, url=url, image=f"{url}/image")
 
 
 class SampleList(BaseModel):
@@ -66,7 +62,7 @@ class InputRecord(BaseModel):
     frames: TimeRange
 
 
-class OutputRecord(BaseModel):
+class OutputRecord(Record):
     """A file that an experiment made."""
 
     name: str
@@ -82,18 +78,7 @@ class OutputRecord(BaseModel):
 
     @classmethod
     def of(cls, output: Output, experiment_url: str) -> "OutputRecord":
-        return cls(
-            name=output.name,
-            title=output.title,
-            kind=output.kind,
-            media_type=output.media_type,
-            width=output.width,
-            height=output.height,
-            bytes=output.bytes,
-            frames=output.frames,
-            rate=output.rate,
-            url=f"{experiment_url}/outputs/{output.name}",
-        )
+        return cls.made_of(output, url=f"{experiment_url}/outputs/{output.name}")
 
 
 class StructureRecord(BaseModel):
@@ -120,7 +105,7 @@ class DiagnosticsRecord(BaseModel):
     facts: list[FactRecord]
 
 
-class ExperimentRecord(BaseModel):
+class ExperimentRecord(Record):
     """An experiment."""
 
     id: str
@@ -158,34 +143,37 @@ class ExperimentRecord(BaseModel):
         url = f"{base}{API}/experiments/{experiment.id}"
         if snapshot is None or snapshot.status.finished or experiment.status.finished:
             snapshot = Snapshot(experiment.status, fraction=float(experiment.status is Status.SUCCEEDED))
-        return cls(
-            id=experiment.id,
+        return cls.made_of(
+            experiment,
             status=snapshot.status,
             progress=snapshot.fraction,
             stage=snapshot.stage,
             position=snapshot.position,
-            method=experiment.method,
-            inputs=[
-                InputRecord(sample=each.sample, crop=Crop(**vars(each.crop)), frames=TimeRange(**vars(each.frames)))
-                for each in experiment.inputs
-            ],
             parameters=dict(experiment.parameters),
-            depth=experiment.depth,
-            listed=experiment.listed,
             outputs=[OutputRecord.of(output, url) for output in experiment.outputs if output.listed],
             timings={stage: round(seconds, 6) for stage, seconds in experiment.timings.items()},
-            diagnostics=DiagnosticsRecord(**experiment.diagnostics) if experiment.diagnostics else None,
-            environment=EnvironmentRecord(**experiment.environment) if experiment.environment else None,
-            error=experiment.error,
-            created_at=experiment.created_at,
-            started_at=experiment.started_at,
-            finished_at=experiment.finished_at,
+            diagnostics=experiment.diagnostics or None,
+            environment=experiment.environment or None,
             url=url,
             page=f"{base}/experiments/{experiment.id}",
         )
 
 
-class PlanRecord(BaseModel):
+class ProgressRecord(Record):
+    """State of an experiment: the data of an event."""
+
+    status: Status
+    position: int | None = Field(description="Place in the queue while it waits; 1 is next.")
+    progress: float = Field(description="The part of the run that is done.")
+    stage: str | None = Field(description="What is being computed while it runs.")
+    elapsed: float = Field(description="Seconds since the run started.")
+
+    @classmethod
+    def of(cls, snapshot: Snapshot) -> "ProgressRecord":
+        return cls.made_of(snapshot, progress=snapshot.fraction, elapsed=round(snapshot.elapsed, 3))
+
+
+class PlanRecord(Record):
     """What an experiment would make and take."""
 
     width: int = Field(description="Pixels of the texture.")
@@ -224,7 +212,7 @@ class ReferenceRecord(BaseModel):
     bibtex: str
 
 
-class AnnouncedRecord(BaseModel):
+class AnnouncedRecord(Record):
     """An output that a method can give."""
 
     name: str
@@ -236,17 +224,15 @@ class AnnouncedRecord(BaseModel):
 
     @classmethod
     def of(cls, output: Announced, method: Method) -> "AnnouncedRecord":
-        return cls(
-            name=output.name,
-            kind=output.kind,
-            media_type=output.media_type,
+        return cls.made_of(
+            output,
             depths=[8, 16] if output.deep else [8],
             parameters=[name for name in method.params.model_fields if name in COMMON or output.changed_by(name)],
             condition=output.condition or None,
         )
 
 
-class MethodRecord(BaseModel):
+class MethodRecord(Record):
     """A method."""
 
     name: str
@@ -261,17 +247,12 @@ class MethodRecord(BaseModel):
 
     @classmethod
     def of(cls, method: Method) -> "MethodRecord":
-        references = [ReferenceRecord(**vars(reference), bibtex=reference.bibtex) for reference in method.references]
-        return cls(
-            name=method.name,
-            title=method.title,
-            summary=method.summary,
-            inputs=[SlotRecord(**vars(slot)) for slot in method.inputs],
+        return cls.made_of(
+            method,
             more_inputs=method.more,
             parameters=method.params.model_json_schema(),
             outputs=[AnnouncedRecord.of(output, method) for output in method.outputs],
-            reference=references[0],
-            references=references,
+            reference=method.references[0],
         )
 
 
