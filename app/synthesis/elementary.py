@@ -19,7 +19,7 @@ from .arrays import Complex, Double, Real
 
 
 def exp(x: ArrayLike) -> Double:
-    """E to the power of x, in double precision; 0.1 µs a value.
+    """Exponential function of x, in double precision; 0.1 µs a value.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""One grey picture of a colour one."""
+"""Luminance: the grey picture of a colour picture."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ WEIGHTS = (0.2126, 0.7152, 0.0722)  # of red, green and blue in sRGB (ITU-R BT.7
 
 
 def luminance(h: Real) -> Real:
-    """Weighted mean of the channels: BT.709's weights for three, the plain mean for any other number.
+    """Compute the weighted mean of the channels: BT.709's weights for three, the plain mean for any other number.
 
     Values are taken as they are stored, without undoing the display's gamma.
 

@@ -1,4 +1,7 @@
-"""From float values to the whole numbers of a picture: cut off, or stretch; never wrap."""
+"""Sinks: what takes the rows of a texture as they are computed, and makes an array, a range or a picture of them.
+
+Values outside a picture's range are cut off, or the histogram is stretched; they never wrap.
+"""
 
 import threading
 from collections.abc import Callable, Iterable
@@ -12,7 +15,7 @@ Rows = Callable[[int, Pixels], None]
 
 
 def array_sink(texture: Real) -> Sink:
-    """A sink that puts all it is handed into an array (height, width, C)."""
+    """Make a sink that writes all rows into an array (height, width, C)."""
 
     def store(first: int, planes: Iterable[Real]) -> None:
         for channel, plane in enumerate(planes):
@@ -22,7 +25,18 @@ def array_sink(texture: Real) -> Sink:
 
 
 class Extent:
-    """A sink that only looks: ``low`` and ``high`` are the least and greatest values seen, and at least [0, peak]."""
+    """A sink that measures the range of the values and keeps nothing.
+
+    Parameters
+    ----------
+    peak : float
+        Greatest value of the sample's range.
+
+    Attributes
+    ----------
+    low, high : float
+        Least and greatest value so far, and no less than 0 … ``peak``.
+    """
 
     def __init__(self, peak: float) -> None:
         self.low, self.high = 0.0, float(peak)
@@ -36,7 +50,7 @@ class Extent:
 
 
 class Levels:
-    """A sink that rounds values of [low, high] to the whole numbers 0 … peak, cutting off what is outside.
+    """A sink that rounds values of [low, high] to the whole numbers 0 … peak and cuts off what lies outside.
 
     With [low, high] = [0, the sample's peak] values keep their place and those outside are cut off. With an
     `Extent`'s, the histogram is stretched: the same affine map for all channels takes everything into the range,
@@ -45,11 +59,11 @@ class Levels:
     Parameters
     ----------
     rows : callable ``(first row, block)``
-        Gets blocks (n, W, C), contiguous, uint8 or uint16 as ``peak`` asks for, valid only during the call.
+        Receives blocks (n, W, C), contiguous, uint8 for a peak of 255 and uint16 otherwise, valid during the call only.
     channels : int
-        Planes that a call brings.
+        Planes of each call.
     low, high : float
-        What becomes 0 and ``peak``.
+        Values that become 0 and ``peak``.
     peak : int
         255 or 65535.
     """

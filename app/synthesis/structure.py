@@ -31,15 +31,15 @@ from .fourier.spot import centre
 from .luminance import luminance
 
 SIGMA = 2.0  # pixels; the scale at which δ tells best, see benchmarks/README.md
-LEAST = 32  # pixels of a side; at 32 δ tells three times out of four, see benchmarks/README.md, and below of nothing
-CENTRE = 1024  # pixels of a side that are measured: more of a texture tells nothing new, and costs
+LEAST = 32  # pixels of a side; at 32 δ is right three times out of four (benchmarks/README.md), below it is noise
+CENTRE = 1024  # pixels of a side that are measured: more of a texture costs time and changes nothing
 CACHED = 1 << 15  # values worked on at a time
-FLAT = 1e-6  # of the crop's contrast: differences that are smaller on average are those of rounding
+FLAT = 1e-6  # of the crop's contrast: average differences below this are rounding errors
 
 
 @dataclass(frozen=True)
 class Structure:
-    """What `structure_index` finds.
+    """Result of `structure_index`.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ class Structure:
 
 
 def structure_index(h: Real, sigma: float = SIGMA) -> Structure:
-    """Measure δ_σ and z of a crop; see the module.
+    """Measure the structure index δ_σ of a crop, and z; the module has the formulas.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ def structure_index(h: Real, sigma: float = SIGMA) -> Structure:
 
 
 def is_too_small(height: int, width: int) -> bool:
-    """Whether a crop is too small for its δ to mean anything: one that has less than 32 pixels along a side.
+    """Tell whether a crop is too small for its δ to mean anything: whether a side has less than 32 pixels.
 
     Examples
     --------
@@ -108,7 +108,7 @@ def is_too_small(height: int, width: int) -> bool:
 
 
 def measure_delta(h: Real, sigma: float = SIGMA) -> float | None:
-    """δ_σ alone of a crop, or of the centre 1024 × 1024 pixels of one that is larger; a third of the work.
+    """Measure only δ_σ, of the central 1024 × 1024 pixels of a larger crop; a third of the work of `structure_index`.
 
     Parameters
     ----------

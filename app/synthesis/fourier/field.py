@@ -93,7 +93,7 @@ class NoiseField:
         if (height, width) == (noise.height, noise.width):
             if noise.periodic:
                 self._smooth = SmoothSpectrum(h)
-            # What is taken off first need only be near the mean: the rest of the mean is read off the transforms.
+            # What is subtracted first need only be near the mean: the transforms give the rest of the mean.
             near = h[::8, ::8].mean(axis=(0, 1), dtype=np.float64).astype(np.float32)
             self._spectrum = self._transform_rows(h.transpose(2, 0, 1), near)
             self.mean = near + self._spectrum[:, :, 0].real.sum(axis=1, dtype=np.float64) / (height * width)
@@ -129,7 +129,9 @@ class NoiseField:
         return noise.draw(noise.height, noise.width, block, random_bits(noise.seed, block))
 
     def spectra(self, block: Block, random: Complex) -> Iterator[Complex]:
-        """One block of columns of the noise's spectrum, channel by channel, without the mean; not after `randomise`.
+        """Compute one block of columns of the noise's spectrum, without the mean, one channel after the other.
+
+        To be called before `randomise`, which overwrites what it needs.
 
         Parameters
         ----------
@@ -165,7 +167,7 @@ class NoiseField:
             yield spectrum
 
     def buffer(self) -> Complex:
-        """An array for columns that are done, (C, height, width // 2 + 1): the field's own, if it is large enough."""
+        """Return an array for transformed columns, (C, height, width // 2 + 1): the field's own if large enough."""
         if self._spectrum.shape[1] == self.noise.height:
             return self._spectrum
         return np.empty((len(self.mean), self.noise.height, self.noise.width // 2 + 1), np.complex64)
@@ -184,7 +186,9 @@ class NoiseField:
         return self
 
     def power(self) -> Real:
-        """Squared modulus of the noise's half spectrum, the mean over the channels; before `randomise`, not after.
+        """Compute the squared modulus of the noise's half spectrum, the mean over the channels.
+
+        To be called before `randomise`, which overwrites what it needs.
 
         Returns
         -------
@@ -220,7 +224,7 @@ class NoiseField:
         self._team.run(transform, row_blocks(self.noise.height), lambda part: self._progress(stage, part))
 
     def array(self) -> Real:
-        """The texture as one array, shape (height, width), or (height, width, C) if the sample has three axes."""
+        """Compute the texture as one array: (height, width, C), or (height, width) for a sample of two axes."""
         texture = np.empty((self.noise.height, self.noise.width, len(self.mean)), np.float32)
         self.randomise().emit(array_sink(texture))
         return texture[:, :, 0] if self._grey else texture

@@ -1,4 +1,4 @@
-"""Moisan's decomposition h = p + s of an image into a periodic and a smooth component, through the Poisson problem.
+"""Periodic plus smooth decomposition h = p + s of an image (Moisan), through a Poisson problem.
 
 p is the solution of Δp = Δᵢh with mean p = mean h, where Δf(x) is the sum over the four neighbours y of f(x) −
 f(y), taken on the torus, and Δᵢ is the same with the neighbours inside the image only. Their difference v = Δh −
@@ -40,7 +40,7 @@ def _axis(length: int, count: int) -> tuple[Complex, Real]:
 
 
 class SmoothSpectrum:
-    """ŝ of an image (H, W, C), one block of columns of the half spectrum at a time.
+    """Half spectrum ŝ of the smooth component of an image (H, W, C), one block of columns at a time.
 
     v̂ is a sum of two products of a function of k₁ and one of k₂: as real and imaginary parts, a matrix product of
     inner dimension 4. In double precision its products are exact and only its sums are rounded, so that it has the same
@@ -64,7 +64,7 @@ class SmoothSpectrum:
         self._left, self._right = (factor.view(np.float32).astype(np.float64) for factor in (left, right))
 
     def block(self, first: int, last: int) -> Iterator[Complex]:
-        """Columns ``first`` to ``last`` − 1 of ŝ, shape (H, last − first), channel by channel."""
+        """Compute columns ``first`` to ``last`` − 1 of ŝ, shape (H, last − first), one channel after the other."""
         columns = slice(2 * first, 2 * last)
         step = max(1, PRODUCT // (2 * (last - first)))
         inverse = self._sines[:, None] + self._cross_sines[columns]
@@ -79,16 +79,18 @@ class SmoothSpectrum:
             yield smooth.view(np.complex64)
 
     def whole(self) -> Complex:
-        """All of ŝ, shape (C, H, W // 2 + 1)."""
+        """Compute all of ŝ, shape (C, H, W // 2 + 1)."""
         return np.stack(list(self.block(0, self._width // 2 + 1)))
 
 
 def periodic_spectrum(h: Real, threads: int = 1) -> Complex:
-    """Half spectrum p̂ of the periodic component.
+    """Compute the half spectrum p̂ of the periodic component.
 
     Parameters
     ----------
     h : ndarray of float32, shape (H, W) or (H, W, C)
+    threads : int
+        For the transform.
 
     Returns
     -------
@@ -103,13 +105,13 @@ def periodic_spectrum(h: Real, threads: int = 1) -> Complex:
 
 
 def smooth_planes(h: Real, threads: int = 1) -> Real:
-    """`smooth_component` of an image (H, W, C) as planes (C, H, W)."""
+    """Compute the `smooth_component` of an image (H, W, C) as planes (C, H, W)."""
     planes: Real = scipy.fft.irfft2(SmoothSpectrum(h).whole(), s=h.shape[:2], overwrite_x=True, workers=threads)
     return planes
 
 
 def periodic_planes(h: Real, threads: int = 1) -> Real:
-    """`periodic_component` of an image (H, W, C) as planes (C, H, W)."""
+    """Compute the `periodic_component` of an image (H, W, C) as planes (C, H, W)."""
     planes = smooth_planes(h, threads)
     for channel, plane in enumerate(planes):
         np.subtract(h[:, :, channel], plane, out=plane)
@@ -117,7 +119,7 @@ def periodic_planes(h: Real, threads: int = 1) -> Real:
 
 
 def smooth_component(h: Real, threads: int = 1) -> Real:
-    """Smooth component s = h − p; its mean is 0.
+    """Compute the smooth component s = h − p of an image; its mean is 0.
 
     Parameters
     ----------
@@ -142,7 +144,7 @@ def smooth_component(h: Real, threads: int = 1) -> Real:
 
 
 def periodic_component(h: Real, threads: int = 1) -> Real:
-    """Periodic component p of an image: what is left of it without the jumps between opposite borders.
+    """Compute the periodic component p of an image, which has no jumps between opposite borders.
 
     No transform of ``h`` itself is needed: p = h − s.
 

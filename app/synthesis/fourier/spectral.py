@@ -2,8 +2,7 @@
 
 The discrete Fourier transform of a real image of height H and width W is kept as `scipy.fft.rfft2` gives it: H rows
 (frequency k₁ = 0 … H − 1) and W // 2 + 1 columns (k₂ = 0 … W // 2); the other half follows from ĥ(−k) = conj ĥ(k).
-Inside column 0, and for an even W inside column W / 2, both k and −k are present, so symmetry has to be seen to
-there.
+Column 0, and for an even W column W / 2, hold both k and −k, so that random numbers must be made symmetric there.
 """
 
 from collections.abc import Callable
@@ -15,7 +14,7 @@ from numpy.typing import NDArray
 from ..arrays import Bytes, Complex, Real
 from ..elementary import log10
 
-STATES = 1 << 16  # values that a 16-bit word takes, and so phases that are drawn from
+STATES = 1 << 16  # values of a 16-bit word, and so the number of different phases
 COLUMNS = 32  # width of a block of columns; part of what a seed means, since every block has its own stream
 
 Block = tuple[int, int]
@@ -27,7 +26,7 @@ coefficients of that block, shape (height, columns), 1 at the origin."""
 
 
 def column_blocks(width: int) -> list[Block]:
-    """First and last-plus-one column of every block of the half spectrum of an image of this width.
+    """Cut the half spectrum of an image of this width into blocks: first and last-plus-one column of each.
 
     Examples
     --------
@@ -39,7 +38,7 @@ def column_blocks(width: int) -> list[Block]:
 
 
 def random_bits(seed: int, block: Block, stream: int = 0) -> SFC64:
-    """Source of the random bits of one block; it depends on no other block, so that any order will do.
+    """Make the source of one block's random bits, which depends on no other block: blocks can be drawn in any order.
 
     Parameters
     ----------
@@ -59,14 +58,27 @@ def random_bits(seed: int, block: Block, stream: int = 0) -> SFC64:
 
 
 def random_words(source: SFC64, height: int, block: Block) -> NDArray[np.uint16]:
-    """The next 16 random bits for every coefficient of a block, shape (height, columns)."""
+    """Draw the next 16 random bits for every coefficient of a block.
+
+    Parameters
+    ----------
+    source : SFC64
+        One of `random_bits`; it moves on.
+    height : int
+        Of the image, in pixels.
+    block : tuple of int
+
+    Returns
+    -------
+    ndarray of uint16, shape (height, columns)
+    """
     columns = block[1] - block[0]
     count = height * columns
     return source.random_raw(-(-count // 4)).view(np.uint16)[:count].reshape(height, columns)
 
 
 def symmetric_columns(width: int, block: Block) -> list[int]:
-    """Columns of a block that hold both k and −k, counted from the block's first.
+    """Find the columns of a block that hold both k and −k, counted from the block's first.
 
     Examples
     --------
@@ -78,7 +90,7 @@ def symmetric_columns(width: int, block: Block) -> list[int]:
 
 
 def real_rows(height: int) -> list[int]:
-    """Rows of a symmetric column in which −k = k, so that the coefficient is real.
+    """Find the rows of a symmetric column in which −k = k, so that the coefficient is real.
 
     Examples
     --------
@@ -118,17 +130,17 @@ DECADES = 4.0
 
 
 class LogModulus:
-    """The picture of a spectrum: centred, grey, logarithmic.
+    """Picture of a spectrum: centred, grey, logarithmic.
 
     Grey 255 is the greatest modulus away from the origin, and 0 is four powers of ten below it or less. The origin,
-    which only tells the mean, counts as the greatest.
+    which holds nothing but the mean, is white.
 
     Parameters
     ----------
     power : ndarray of float32, shape (H, width // 2 + 1)
         Squared modulus on the half spectrum; for a colour image the mean over the channels.
     width : int
-        Of the image.
+        Width of the image, in pixels.
     """
 
     def __init__(self, power: Real, width: int) -> None:
@@ -137,7 +149,7 @@ class LogModulus:
         self._greatest = np.float32(max(away))
 
     def rows(self, first: int, last: int) -> Bytes:
-        """Rows ``first`` to ``last`` − 1, shape (last − first, width)."""
+        """Compute rows ``first`` to ``last`` − 1 of the picture, shape (last − first, width)."""
         power, width, greatest = self._power, self._width, self._greatest
         height = len(power)
         k = (np.arange(first, last) - height // 2) % height

@@ -1,4 +1,4 @@
-"""Spot extension: a sample pasted into a larger image so that the noise of both has the same mean, variance and look.
+"""Spot extension: the sample pasted into a larger image so that its noise keeps mean, variance and look.
 
     h̃ = m + g · φ_α · (p − m)
 
@@ -46,11 +46,12 @@ def window(n: int, alpha: float, profile: Profile = "bump") -> Double:
     alpha : float
         0 (no transition at all) to 0.5.
     profile : {"bump", "gaussian"}
+        The IPOL article's or the TIP article's.
 
     Returns
     -------
     ndarray of float64, shape (n,)
-        Not to be written to.
+        Read-only.
 
     Examples
     --------
@@ -77,7 +78,19 @@ def window(n: int, alpha: float, profile: Profile = "bump") -> Double:
 
 
 def centre(h: Real, height: int, width: int) -> Real:
-    """Take the centre of an image, at most ``height`` × ``width`` pixels of it (a view)."""
+    """Cut an image to its centre.
+
+    Parameters
+    ----------
+    h : ndarray, shape (H, W) or (H, W, C)
+    height, width : int
+        Most pixels of each side that are kept.
+
+    Returns
+    -------
+    ndarray
+        A view, of at most ``height`` × ``width`` pixels.
+    """
     top, left = max(0, (h.shape[0] - height) // 2), max(0, (h.shape[1] - width) // 2)
     return h[top : top + height, left : left + width]
 
@@ -106,7 +119,7 @@ class Spot:
         return (self.width - int(self.planes.shape[2])) // 2
 
     def rows(self, first: int, last: int) -> Real:
-        """Rows ``first`` to ``last`` − 1 of h̃, shape (C, last − first, width)."""
+        """Compute rows ``first`` to ``last`` − 1 of h̃, shape (C, last − first, width)."""
         channels, high, wide = self.planes.shape
         rows = np.empty((channels, last - first, self.width), np.float32)
         rows[:] = self.mean[:, None, None]
@@ -118,7 +131,7 @@ class Spot:
 
 
 def variances(planes: Real, area: int) -> Double:
-    """Variance of every channel of planes (C, M, N) that lie in an image of ``area`` pixels, 0 around them; (C,)."""
+    """Compute the variances, shape (C,), of planes (C, M, N) with zeros around them, up to ``area`` pixels in all."""
     # A row is short enough for single precision; all of them are not.
     squares = np.einsum("cyx,cyx->cy", planes, planes).sum(axis=1, dtype=np.float64)
     sums = planes.sum(axis=2).sum(axis=1, dtype=np.float64)
@@ -127,7 +140,19 @@ def variances(planes: Real, area: int) -> Double:
 
 
 def make_spot(p: Real, mean: Double, height: int, width: int, alpha: float, profile: Profile) -> Spot:
-    """`extend_spot` from planes (C, M₁, N₁), which it changes, and without the constant around."""
+    """Extend a spot as `extend_spot` does, in place and without the constant around its rectangle.
+
+    Parameters
+    ----------
+    p : ndarray of float32, shape (C, M₁, N₁)
+        Planes of the periodic component; overwritten by the spot's.
+    mean, height, width, alpha, profile
+        Those of `extend_spot`.
+
+    Returns
+    -------
+    Spot
+    """
     high, wide = p.shape[1:]
     p -= mean.astype(np.float32)[:, None, None]
     if (high, wide) != (height, width):
@@ -139,7 +164,16 @@ def make_spot(p: Real, mean: Double, height: int, width: int, alpha: float, prof
 
 
 def fade(p: Real, height: int, width: int, alpha: float, profile: Profile) -> None:
-    """Multiply planes (C, M₁, N₁) by φ_α along every axis that is extended, in place."""
+    """Multiply planes by φ_α along every axis that is extended, in place.
+
+    Parameters
+    ----------
+    p : ndarray of float32, shape (C, M₁, N₁)
+    height, width : int
+        Size of the extended image, in pixels.
+    alpha, profile
+        Those of `window`.
+    """
     high, wide = p.shape[1:]
     if height > high:
         p *= window(high, alpha, profile).astype(np.float32)[:, None]

@@ -24,7 +24,7 @@ from .spot import Profile, Spot, centre, make_spot
 def sample_spot(
     h: Real, height: int, width: int, alpha: float = 0.1, window: Profile = "bump", threads: int = 1
 ) -> Spot:
-    """The spot that RPN and ADSN use: the periodic component of a sample, extended to the texture's size.
+    """Make the spot of RPN and ADSN: the periodic component of a sample, extended to the texture's size.
 
     Parameters
     ----------
@@ -35,6 +35,7 @@ def sample_spot(
     alpha, window
         See `microtexture.fourier.spot.window`.
     threads : int
+        For the transform.
 
     Returns
     -------
@@ -45,7 +46,20 @@ def sample_spot(
 
 
 def transform(plane: Real, spot: Spot, threads: int = 1) -> Complex:
-    """Half spectrum, shape (height, width // 2 + 1), of a plane on the spot's rectangle with zeros around it."""
+    """Transform a plane that lies on a spot's rectangle, with zeros around it.
+
+    Parameters
+    ----------
+    plane : ndarray of float32, shape (M₁, N₁)
+    spot : Spot
+        Gives the place of the rectangle and the size of the image.
+    threads : int
+        For the transform.
+
+    Returns
+    -------
+    ndarray of complex64, shape (spot.height, spot.width // 2 + 1)
+    """
     if plane.shape != (spot.height, spot.width):
         whole = np.zeros((spot.height, spot.width), np.float32)
         whole[spot.top : spot.top + plane.shape[0], spot.left : spot.left + plane.shape[1]] = plane
@@ -61,20 +75,20 @@ def convolve(
     progress: Progress | None = None,
     begin: float = 0.0,
 ) -> Real:
-    """Spot noise of given white noises: the sum of those of several spots that share their mean.
+    """Convolve spots with white noises and add up the results: the noise of several spots that share their mean.
 
     Parameters
     ----------
     spots : sequence of Spot
-        Of one size, and with the same mean: the sum has it once.
+        All of one size and with the same mean, which the sum has once.
     noises : sequence of ndarray of complex64, shape (height, width // 2 + 1)
-        Ŵ on the half spectrum, one for each spot; what it says at the origin is not looked at.
+        Ŵ on the half spectrum, one for each spot; the value at the origin is ignored.
     threads : int
         For the transforms; the result does not depend on it.
     progress : callable ``(stage, part)``, optional
         Called between channels; what it raises stops the work.
     begin : float
-        Part of the work that is done when this begins.
+        Part of the caller's work that is done before, 0–1: the progress goes from there to 1.
 
     Returns
     -------
@@ -93,8 +107,8 @@ def convolve(
             total = spectrum if total is None else np.add(total, spectrum, out=total)
         assert total is not None
         total[0, 0] = 0
-        made = scipy.fft.irfft2(total, s=texture.shape[1:], overwrite_x=True, workers=threads)
-        np.add(made, np.float32(mean), out=texture[channel])
+        noise_plane = scipy.fft.irfft2(total, s=texture.shape[1:], overwrite_x=True, workers=threads)
+        np.add(noise_plane, np.float32(mean), out=texture[channel])
     if progress:
         progress("texture", 1.0)
     return texture.transpose(1, 2, 0)

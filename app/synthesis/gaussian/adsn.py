@@ -133,13 +133,28 @@ def adsn_field(
 ) -> NoiseField:
     """Prepare the ADSN of an image, whose rows are then handed to a sink.
 
-    Parameters, result and errors are those of `microtexture.gaussian.rpn.rpn_field`.
+    Parameters
+    ----------
+    h, height, width, progress, **options
+        Those of `adsn`.
+    team : Team
+        The threads that work.
+
+    Returns
+    -------
+    NoiseField
+        ``adsn_field(…).array()`` is `adsn`.
+
+    Raises
+    ------
+    ValueError
+        As `adsn`.
     """
     return NoiseField(h, Noise(white_noise, height or h.shape[0], width or h.shape[1], **options), team, progress)
 
 
 def adsn_of_spot(spot: Spot, seed: int, threads: int = 1, progress: Progress | None = None) -> Real:
-    """Synthesize the ADSN of a spot that is given as it is, with the white noise of `adsn` at this seed.
+    """Synthesize the ADSN of any spot, as it is, with the white noise of `adsn` at this seed.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Cut texton: a Gaussian colour texture from a kernel of K × K pixels, which keeps the covariance of its colours.
 
 At every frequency the model of a sample is Gaussian of covariance p̂ p̂* over the channels (p̂ a column, the spectrum of
-the periodic component). A cut cannot keep all of that, so it is asked of an average over neighbouring frequencies,
+the periodic component). A cut cannot keep all of that, but it can keep an average over neighbouring frequencies,
 which fades the covariance Γ(z) = IDFT(p̂ p̂*) of the colours of two places out with their lag z, along each axis of N
 pixels linearly and until 4K N/(N − K). Of all kernels, matrices t̂ with that product t̂ t̂*, the Hermitian root is the
 one without phase:
@@ -50,13 +50,13 @@ ROUNDING = 1e-15  # the same of a cut kernel, where what is weak in the sample i
 
 @dataclass(frozen=True)
 class CutTexton:
-    """What a cut leaves of a sample.
+    """Cut texton of a sample.
 
     Parameters
     ----------
     spots : tuple of Spot
         One for each white noise, at most C: R t 1_Ω along the principal axes of the sample's colours, the strongest
-        first. What is along an axis without variance is not there.
+        first; an axis without variance has none.
     gains : tuple of float
         R along these axes.
     """
@@ -74,18 +74,18 @@ def cut_texton(
     threads: int = 1,
     progress: Progress | None = None,
 ) -> CutTexton:
-    """The K × K pixels around the origin of a sample's texton, for textures of one size.
+    """Cut the texton of a sample to the K × K pixels around its origin, for textures of one size.
 
     Parameters
     ----------
     h : ndarray of float32, shape (M₁, N₁, C)
         The sample; no axis longer than the output's.
     mean : ndarray of float64, shape (C,)
-        The sample's.
+        Mean of every channel of the sample.
     height, width : int
         Size of the output.
     cut : int
-        K; an axis that is shorter is taken whole.
+        K, at least 1; a shorter axis is taken whole.
     threads : int
         For the transforms.
     progress : callable ``(stage, part)``, optional
@@ -99,8 +99,8 @@ def cut_texton(
     --------
     >>> import numpy as np
     >>> h = np.random.default_rng(0).random((16, 21, 3), np.float32)
-    >>> made = cut_texton(h, h.mean((0, 1), dtype=np.float64), 40, 40, 1)
-    >>> [spot.planes.shape for spot in made.spots]
+    >>> texton = cut_texton(h, h.mean((0, 1), dtype=np.float64), 40, 40, 1)
+    >>> [spot.planes.shape for spot in texton.spots]
     [(3, 1, 1), (3, 1, 1), (3, 1, 1)]
     """
     p = _centred(h, threads)
@@ -116,10 +116,10 @@ def cut_texton(
 
 
 def lag_error(h: Real, spots: Sequence[Spot], threads: int = 1) -> tuple[float, float]:
-    """How far the covariance of a model's colours at two places is off from the sample's, where that is most.
+    """Measure the largest error of a model's covariance of colours at two places.
 
     The covariance at lag z is the matrix Γ(z) of the mean products of channel a at u and b at u + z. All lags of the
-    sample's torus are looked at, and distances between matrices are Frobenius norms.
+    sample's torus are compared with the sample's own, by Frobenius norms.
 
     Parameters
     ----------
@@ -133,9 +133,9 @@ def lag_error(h: Real, spots: Sequence[Spot], threads: int = 1) -> tuple[float, 
     Returns
     -------
     error : float
-        The greatest of them, as a part of the norm of Γ(0); 0 for a sample without contrast.
+        Norm of the largest difference, as a part of that of Γ(0); 0 for a sample without contrast.
     lag : float
-        The distance between the two places, in pixels.
+        Distance of the two places, in pixels.
 
     Examples
     --------
@@ -176,7 +176,7 @@ def lag_error(h: Real, spots: Sequence[Spot], threads: int = 1) -> tuple[float, 
 
 
 def _centred(h: Real, threads: int) -> Real:
-    """Planes of the periodic component, without their means."""
+    """Compute the planes of the periodic component, without their means."""
     p = periodic_planes(h, threads)
     p -= p.mean(axis=(1, 2), dtype=np.float64, keepdims=True).astype(np.float32)
     return p
@@ -189,7 +189,7 @@ def _spectra(p: Real, threads: int) -> Complex:
 
 
 def centred_places(side: int, cut: int) -> Ints:
-    """Where, from the origin of a torus, the ``cut`` pixels lie whose middle is the origin."""
+    """List the places, relative to the origin of a torus, of the ``cut`` pixels whose middle is the origin."""
     count = min(cut, side)
     return np.arange(count) - count // 2
 
@@ -215,18 +215,18 @@ def _root(spectra: Complex, size: Sequence[int], cut: int, threads: int, progres
     averaged = np.empty((grid[0], grid[1] // 2 + 1, count, count), np.complex64)
     faded = np.empty(grid, np.float32)
     for done, (a, b) in enumerate(combinations_with_replacement(range(count), 2)):
-        _say(progress, done / (count * count + count))
+        _report(progress, done / (count * count + count))
         product = scipy.fft.irfft2(spectra[a] * spectra[b].conj(), s=size, overwrite_x=True, workers=threads)
         faded[place] = product[taken] * down[:, None] * across
         averaged[:, :, a, b] = scipy.fft.rfft2(faded, workers=threads)
         averaged[:, :, b, a] = averaged[:, :, a, b].conj()
     for row, matrices in enumerate(averaged):
-        _say(progress, 0.5 + 0.4 * row / len(averaged))
+        _report(progress, 0.5 + 0.4 * row / len(averaged))
         # In double precision, and rounded after: other processors' LAPACK rounds otherwise.
         values, axes = np.linalg.eigh(matrices.astype(np.complex128))
         matrices[:] = (axes * np.sqrt(np.maximum(values, 0))[:, None, :]) @ axes.conj().swapaxes(1, 2)
     for a, b in np.ndindex(count, count):
-        _say(progress, 0.9 + 0.1 * (a * count + b) / count**2)
+        _report(progress, 0.9 + 0.1 * (a * count + b) / count**2)
         kernel[a, b] = scipy.fft.irfft2(averaged[:, :, a, b], s=grid, workers=threads)[_square(grid, cut)]
     return kernel
 
@@ -236,7 +236,7 @@ def _square(size: Sequence[int], cut: int) -> tuple[Ints, ...]:
     return np.ix_(*(centred_places(side, cut) for side in size))
 
 
-def _say(progress: Progress | None, part: float) -> None:
+def _report(progress: Progress | None, part: float) -> None:
     if progress:
         progress("texton", part)
 
@@ -248,10 +248,10 @@ def _covariance(kernel: Real, area: int) -> Double:
     return found
 
 
-def _transport(have: Double, wanted: Double) -> Double:
-    """The symmetric R with R have Rᵀ = wanted: the optimal transport between Gaussian laws of these covariances."""
+def _transport(have: Double, target: Double) -> Double:
+    """The symmetric R with R have Rᵀ = target: the optimal transport between Gaussian laws of these covariances."""
     root, inverse = _roots(have)
-    middle, _ = _roots(root @ wanted @ root)
+    middle, _ = _roots(root @ target @ root)
     factor: Double = inverse @ middle @ inverse
     return factor
 

@@ -25,12 +25,12 @@ from ..fourier.spectral import STATES
 from ..fourier.spot import Spot
 from ..fourier.spot_noise import convolve
 
-POINTS = 100_000  # that are drawn one by one
+POINTS = 100_000  # most points that are drawn one by one
 DEVIATIONS = 12  # of a Poisson variable: it goes further with a chance of 1e-32
 
 
 def counts(height: int, width: int, order: int, seed: int) -> Ints:
-    """How many of ``order`` independent uniform points of the torus fall on each pixel: a multinomial variable.
+    """Count how many of ``order`` independent uniform points of the torus fall on each pixel: a multinomial variable.
 
     The first 100,000 points are drawn one by one, so that those of a smaller order are among those of a greater
     one. Of the rest, all but a few are drawn at once: a Poisson number on each pixel, whose law *given its total*
@@ -40,8 +40,9 @@ def counts(height: int, width: int, order: int, seed: int) -> Ints:
     Parameters
     ----------
     height, width : int
+        Size of the torus, in pixels.
     order : int
-        At least 1.
+        Number of points, at least 1.
     seed : int
         Not negative.
 
@@ -86,7 +87,17 @@ def _poisson(random: Generator, mean: float, size: int) -> NDArray[np.int32]:
 
 
 def impulses(height: int, width: int, order: int, seed: int) -> Real:
-    """The white noise of a DSN, (c − n/N) / √n: mean 0 and variance 1/N, shape (height, width)."""
+    """Draw the white noise of a DSN, (c − n/N) / √n, of mean 0 and variance 1/N.
+
+    Parameters
+    ----------
+    height, width, order, seed
+        Those of `counts`.
+
+    Returns
+    -------
+    ndarray of float32, shape (height, width)
+    """
     drawn = counts(height, width, order, seed)
     # Whole numbers first: near zero, single precision is enough.
     drawn -= order // drawn.size
@@ -97,7 +108,7 @@ def impulses(height: int, width: int, order: int, seed: int) -> Real:
 
 
 def dsn(spot: Spot, order: int, *, seed: int = 0, threads: int = 1, progress: Progress | None = None) -> Real:
-    """DSN of a spot.
+    """Synthesize the DSN of a spot.
 
     Parameters
     ----------
@@ -134,15 +145,16 @@ def dsn(spot: Spot, order: int, *, seed: int = 0, threads: int = 1, progress: Pr
 
 
 def spot_shape(kind: Literal["disc", "gaussian"], height: int, width: int, radius: float) -> Real:
-    """A spot that needs no sample, in the middle of the image, with values from 0 to 1.
+    """Draw a spot that needs no sample, in the middle of an image, with values from 0 to 1.
 
     Parameters
     ----------
     kind : {"disc", "gaussian"}
         1 within ``radius`` of the middle pixel and 0 elsewhere, or a Gaussian whose standard deviation is half of it.
     height, width : int
+        Size of the image, in pixels.
     radius : float
-        Pixels.
+        In pixels.
 
     Returns
     -------
@@ -157,7 +169,19 @@ def spot_shape(kind: Literal["disc", "gaussian"], height: int, width: int, radiu
 def standard_spot(
     kind: Literal["disc", "gaussian"], height: int, width: int, radius: float, mean: float, deviation: float
 ) -> Spot:
-    """`spot_shape`, mapped to a given mean and standard deviation, so that every noise of it has these too.
+    """Make a spot from `spot_shape` whose noises have this mean and standard deviation.
+
+    Parameters
+    ----------
+    kind, height, width, radius
+        Those of `spot_shape`.
+    mean, deviation : float
+        Mean and standard deviation of every noise of the spot.
+
+    Returns
+    -------
+    Spot
+        Of one channel.
 
     Raises
     ------
@@ -174,7 +198,7 @@ def standard_spot(
 
 
 def excess_kurtosis(spot: Spot) -> Double:
-    """Excess kurtosis of the spot's values over the whole torus, shape (C,): a pixel of the DSN has 1/n of it.
+    """Compute the excess kurtosis of a spot's values, shape (C,); a pixel of its DSN has 1/n of it.
 
     0 for a spot without contrast.
     """

@@ -19,7 +19,7 @@ make a linear function, Σ wᵢ wⱼ (f̂ᵢ* f̂ⱼ) Kᵢⱼ, greatest, so some
 r² ≤ N, so r = 1, which is one noise for all (but for the four frequencies at most where all is real). For four samples
 it is a restriction.
 
-Phases that make one mixture are told up to a common one: here the first sample's is kept, u₁ = 1.
+The phases are unique up to a common one: here the first sample's is kept, u₁ = 1.
 
 References
 ----------
@@ -81,7 +81,7 @@ class Mixture:
         def transform(block: tuple[int, int]) -> None:
             random = fields[0].random(block)
             spectra = [np.stack(list(field.spectra(block, random))) for field in fields]
-            for spectrum, turn in zip(spectra[1:], alignment(spectra, weights), strict=True):
+            for spectrum, turn in zip(spectra[1:], align(spectra, weights), strict=True):
                 np.multiply(spectrum, turn, out=spectrum)
             for columns, spectrum in zip(self._columns, spectra, strict=True):
                 columns[:, :, slice(*block)] = scipy.fft.ifft(spectrum, axis=1, overwrite_x=True, workers=1)
@@ -89,7 +89,16 @@ class Mixture:
         team.run(transform, column_blocks(noise.width), lambda part: progress("random phase", part))
 
     def emit(self, weights: Sequence[float], sink: Sink, stage: str = "texture") -> None:
-        """Hand the rows of Σ wᵢ Xᵢ to a sink, as `NoiseField.emit` does; any number of times."""
+        """Hand the rows of Σ wᵢ Xᵢ to a sink, as `NoiseField.emit` does; any number of times.
+
+        Parameters
+        ----------
+        weights : sequence of float
+            Not negative, of sum 1.
+        sink : callable ``(first row, planes)``
+        stage : str
+            What the progress calls this pass.
+        """
 
         def transform(rows: tuple[int, int]) -> None:
             sink(rows[0], self._planes(weights, *rows))
@@ -122,8 +131,8 @@ def _phase(values: Complex) -> Complex:
     return turns
 
 
-def alignment(spectra: Sequence[Complex], weights: Sequence[float]) -> list[Complex]:
-    """Phases uᵢ that turn spots into one another as closely as can be.
+def align(spectra: Sequence[Complex], weights: Sequence[float]) -> list[Complex]:
+    """Find the phases uᵢ that turn spots into one another as closely as possible.
 
     Every uᵢ in turn is set to the best for the others, the phase of Σⱼ wⱼ (f̂ᵢ* f̂ⱼ) uⱼ over j ≠ i, from each sample's
     own alignment as a start, and the best is gone on with. One start alone ends in a lesser maximum at four
@@ -137,13 +146,13 @@ def alignment(spectra: Sequence[Complex], weights: Sequence[float]) -> list[Comp
     Returns
     -------
     list of ndarray of complex64, each (…)
-        Those of the second spot and of the following; the first one's is 1.
+        Phases of the second spot and of those after it; the first one's is 1.
 
     Examples
     --------
     >>> import numpy as np
     >>> spots = [np.array([[z]], np.complex64) for z in (1, 2j, -3)]
-    >>> bool(np.allclose(alignment(spots, [1 / 3] * 3), [[-1j], [-1]]))
+    >>> bool(np.allclose(align(spots, [1 / 3] * 3), [[-1j], [-1]]))
     True
     """
     count = len(spectra)
@@ -191,7 +200,7 @@ def mix(
     threads: int = 1,
     progress: Progress | None = None,
 ) -> Real:
-    """Gaussian texture whose model is the barycentre of those of several samples.
+    """Synthesize a Gaussian texture whose model is the barycentre of the models of several samples.
 
     Parameters
     ----------
@@ -199,7 +208,7 @@ def mix(
         Two or more; sizes may differ, channels may not. Each one's periodic component is extended, or its centre
         taken, to the texture's size.
     weights : sequence of float, optional
-        Not negative, with a positive sum, which is made 1; default: equal ones. For two samples (1 − ρ, ρ).
+        Not negative, with a positive sum, by which they are divided; default: equal. For two samples (1 − ρ, ρ).
     height, width : int, optional
         Size of the texture; default: the first sample's.
     seed : int

@@ -1,4 +1,4 @@
-"""The swap of modulus and phase: the Fourier modulus of one image with the phase of another, both ways.
+"""Swap of modulus and phase: the Fourier modulus of one image with the phase of another, both ways.
 
     t̂(ξ) = |â(ξ)| exp(i arg b̂(ξ)),   ô(ξ) = |b̂(ξ)| exp(i arg â(ξ)),
 
@@ -61,7 +61,7 @@ def swap(first: Real, second: Real, threads: int = 1, progress: Progress | None 
     report = progress or ignore_progress
     report("swap", 0)
     height, width, channels = first.shape
-    made = np.empty((2, channels, height, width), np.float32)
+    images = np.empty((2, channels, height, width), np.float32)
     for channel in range(channels):
         planes = first[:, :, channel], second[:, :, channel]
         a, b = (scipy.fft.rfft2(plane, workers=threads) for plane in planes)
@@ -69,10 +69,10 @@ def swap(first: Real, second: Real, threads: int = 1, progress: Progress | None 
         floors = (ROUNDING * math.sqrt(np.einsum("yx,yx->", plane, plane)) for plane in planes)
         spectra = _swapped(a, b, *floors)
         report("swap", (channel + 0.6) / channels)
-        for image, spectrum in zip(made, spectra, strict=True):
+        for image, spectrum in zip(images, spectra, strict=True):
             image[channel] = scipy.fft.irfft2(spectrum, s=(height, width), overwrite_x=True, workers=threads)
         report("swap", (channel + 1) / channels)
-    return np.moveaxis(made[0], 0, 2), np.moveaxis(made[1], 0, 2)
+    return np.moveaxis(images[0], 0, 2), np.moveaxis(images[1], 0, 2)
 
 
 def _swapped(a: Complex, b: Complex, a_floor: float, b_floor: float) -> list[Complex]:
@@ -90,7 +90,7 @@ def _with_modulus(spectrum: Complex, modulus: Real) -> Complex:
 
 
 def power(planes: Real, threads: int = 1) -> Real:
-    """Squared modulus on the half spectrum, the mean over the channels.
+    """Compute the squared modulus on the half spectrum, the mean over the channels.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def power(planes: Real, threads: int = 1) -> Real:
 
 
 def centred_phase(image: Real, threads: int = 1) -> Real:
-    """Phase of the mean of an image's channels, the origin in the middle.
+    """Compute the phase of the mean of an image's channels, with the origin in the middle.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ def centred_phase(image: Real, threads: int = 1) -> Real:
     Returns
     -------
     ndarray of float32, shape (H, W)
-        Of [−π, π]; the origin is at (H // 2, W // 2), and the phase at −k is minus that at k.
+        Within [−π, π]; the origin is at (H // 2, W // 2), and the phase at −k is minus that at k.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""An image whose Fourier modulus bears a white Rayleigh noise, while its phase stays.
+"""Rayleigh noise on the Fourier modulus of an image, whose phase stays.
 
     ẑ(ξ) = p̂(ξ) R(ξ),   R even, Rayleigh with E R² = 1, R(0) = 1,
 
@@ -34,7 +34,7 @@ def rayleigh(
     Parameters
     ----------
     h : ndarray of float32, shape (H, W) or (H, W, C)
-        Any number of channels, any range; all channels bear the same noise.
+        Any number of channels, any range; the noise is the same in all channels.
     height, width : int, optional
         Size of the result, at most the image's, of which the centre is taken; default: the image's.
     seed : int
@@ -52,7 +52,7 @@ def rayleigh(
     Raises
     ------
     ValueError
-        If a larger size is asked for: what has no phase there cannot keep it.
+        If the size is larger than the image's, which has no phase to keep there.
 
     Examples
     --------

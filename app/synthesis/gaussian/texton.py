@@ -1,4 +1,4 @@
-"""Texton: the shortest writing of a Gaussian texture, a spot with the sample's Fourier modulus and no phase.
+"""Texton: a compact representation of a Gaussian texture, the spot with the sample's Fourier modulus and no phase.
 
     t̂_c(k) = p̂_c(k) conj(ℓ̂(k)) / |ℓ̂(k)|,   t̂(0) = 0,
 
@@ -42,7 +42,7 @@ def _sign(spectrum: Complex) -> Complex:
 
 
 def texton(h: Real, threads: int = 1, progress: Progress | None = None) -> Real:
-    """Texton of the periodic component of an image, without its mean.
+    """Compute the texton of the periodic component of an image, without its mean.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def texton(h: Real, threads: int = 1, progress: Progress | None = None) -> Real:
 
 
 def radii(t: Real, parts: Sequence[float]) -> list[float]:
-    """Radii of the smallest discs around the texton's origin that hold these parts of its energy.
+    """Find the radii of the smallest discs around the texton's origin that hold parts of its energy.
 
     Parameters
     ----------
@@ -109,7 +109,7 @@ def radii(t: Real, parts: Sequence[float]) -> list[float]:
 
 
 def extend_texton(t: Real, mean: Double, height: int, width: int) -> Spot:
-    """Extended texton t̃ = m + r (t − m) 1_Ω with r² = M₂N₂ / (M₁N₁).
+    """Extend a texton: t̃ = m + r (t − m) 1_Ω with r² = M₂N₂ / (M₁N₁).
 
     Its noise has the covariance of colours (1/M₂N₂) Σ (t̃ − m)(t̃ − m)ᵀ, the sum over an image of M₂ × N₂ pixels, and
     that is then the sample's, (1/M₁N₁) Σ (t − m)(t − m)ᵀ. No more can be cut off than that: see
@@ -120,7 +120,7 @@ def extend_texton(t: Real, mean: Double, height: int, width: int) -> Spot:
     t : ndarray of float32, shape (M₁, N₁, C)
         `texton`; no axis longer than the output's.
     mean : ndarray of float64, shape (C,)
-        The sample's.
+        Mean of every channel of the sample.
     height, width : int
         Size M₂ × N₂ of the output.
 
@@ -135,10 +135,10 @@ def extend_texton(t: Real, mean: Double, height: int, width: int) -> Spot:
 def texton_noise(
     h: Real, spots: Sequence[Spot], *, seed: int = 0, threads: int = 1, progress: Progress | None = None
 ) -> Real:
-    """ADSN of a sample's texton, its luminance at the phase of the sample's own ADSN.
+    """Synthesize the ADSN of a sample's texton, its luminance at the phase of the sample's own ADSN.
 
     At every frequency, with ℓ the luminance of the sample's extended spot, aⱼ that of the texton's spots, R the white
-    noise of `microtexture.gaussian.adsn` at this seed and V white noises of their own, spot j is given
+    noise of `microtexture.gaussian.adsn` at this seed and V white noises of their own, spot j has the noise
 
         Ŵⱼ = vⱼ R + V̂ⱼ − vⱼ Σᵢ v̄ᵢ V̂ᵢ,   vⱼ = (ℓ / |ℓ|) āⱼ / ‖a‖.
 
@@ -163,15 +163,15 @@ def texton_noise(
     -------
     ndarray of float32, shape (height, width, C) of the spots
     """
-    say = progress or ignore_progress
+    report = progress or ignore_progress
     height, width = spots[0].height, spots[0].width
-    say("random phase", 0.0)
+    report("random phase", 0.0)
     own = sample_spot(h, height, width, threads=threads)
     phase = _sign(transform(luminance(own.planes.transpose(1, 2, 0)), own, threads))
     del own
     shares = []
     for number, spot in enumerate(spots):
-        say("random phase", 0.1 + 0.2 * number / len(spots))
+        report("random phase", 0.1 + 0.2 * number / len(spots))
         shares.append(transform(luminance(spot.planes.transpose(1, 2, 0)), spot, threads).conj())
     norm = np.sqrt(sum(np.square(share.real) + np.square(share.imag) for share in shares))
     nowhere = norm == 0
@@ -181,7 +181,7 @@ def texton_noise(
         np.multiply(share, phase, out=share)
         share[nowhere] = 1 / np.sqrt(len(shares))
     del norm, phase
-    say("random phase", 0.3)
+    report("random phase", 0.3)
     for block in column_blocks(width):
         _draw(shares, block, width, seed)
     return convolve(spots, shares, threads, progress, begin=0.45)

@@ -1,9 +1,9 @@
-"""A random phase in three dimensions, on the half spectrum of a video.
+"""Random phase in three dimensions, on the half spectrum of a video.
 
 The transform of a real video of T frames is kept as `scipy.fft.rfftn` over (t, y, x) gives it: k₀ = 0 … T − 1 in time,
-k₁ = 0 … H − 1 down and k₂ = 0 … W // 2 across; the other half follows from ĥ(−k) = conj ĥ(k). Inside column 0, and for
-an even W inside column W / 2, both k and −k are present. They lie in the rows k₁ and −k₁, so these two are drawn
-together, each pair from a stream of its own.
+k₁ = 0 … H − 1 down and k₂ = 0 … W // 2 across; the other half follows from ĥ(−k) = conj ĥ(k). Column 0, and for
+an even W column W / 2, hold both k and −k, in the rows k₁ and −k₁. So these two rows are drawn together, each pair from
+a stream of its own.
 """
 
 import numpy as np
@@ -15,7 +15,7 @@ from .rpn import phase_table
 
 
 def conjugate_rows(row: int, height: int) -> list[int]:
-    """The rows k₁ and −k₁.
+    """List the rows k₁ and −k₁, which may be one.
 
     Examples
     --------
@@ -26,7 +26,7 @@ def conjugate_rows(row: int, height: int) -> list[int]:
 
 
 def random_phase_rows(shape: tuple[int, int, int], row: int, flat: Complex, seed: int) -> Complex:
-    """``exp(iθ)`` at the rows k₁ and −k₁ of the half spectrum of a video; it depends on no other row.
+    """Draw ``exp(iθ)`` at the rows k₁ and −k₁ of the half spectrum of a video, which depend on no other row.
 
     Parameters
     ----------
@@ -38,6 +38,7 @@ def random_phase_rows(shape: tuple[int, int, int], row: int, flat: Complex, seed
         The phase at frequency 0 in time: that of `microtexture.gaussian.rpn` at this seed, so that a video
         that stands still has the phase of its RPN.
     seed : int
+        Not negative.
 
     Returns
     -------

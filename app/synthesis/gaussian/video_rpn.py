@@ -1,8 +1,8 @@
-"""RPN in three dimensions: the modulus of a video over time and space, with a random phase; a Gaussian dynamic texture.
+"""Video RPN, random phase noise in three dimensions: a Gaussian dynamic texture.
 
     Ẑ(ω, ξ) = ĥ(ω, ξ) exp(iθ(ω, ξ)),   θ odd, uniform on ]−π, π], θ(0, 0) = 0,
 
-the same θ for every channel. The result is periodic in space and in time. A video is hardly ever: the jumps between
+the same θ for every channel. The result is periodic in space and in time. A video hardly ever is: the jumps between
 opposite borders, and between its last frame and its first, would come back as streaks and as a flicker over all of it.
 So every frame is replaced by its periodic component, and the jump J(ξ) that is left between the last frame and the
 first is taken out as Moisan does it along one more axis, a frame counting as a pixel:
@@ -45,7 +45,19 @@ Video = NDArray[Any]
 
 
 def jump_share(frames: int, height: int, width: int, rows: list[int]) -> Complex:
-    """ŝ / Ĵ at these rows of the half spectrum, (frames, rows, width // 2 + 1)."""
+    """Compute ŝ / Ĵ at some rows of the half spectrum; see the module.
+
+    Parameters
+    ----------
+    frames, height, width : int
+        Size of the video.
+    rows : list of int
+        k₁, 0 first if it is among them.
+
+    Returns
+    -------
+    ndarray of complex64, shape (frames, rows, width // 2 + 1)
+    """
     k = 2 * np.pi * np.arange(frames) / frames
     down, across = (4 * np.sin(np.pi * each) ** 2 for each in (np.array(rows) / height, np.fft.rfftfreq(width)))
     below = 2 - 2 * np.cos(k)[:, None, None] + down[:, None] + across
@@ -56,13 +68,13 @@ def jump_share(frames: int, height: int, width: int, rows: list[int]) -> Complex
 
 
 def centre_video(video: Video, shape: tuple[int, int, int]) -> Video:
-    """Take the centre of a video, at most ``shape`` of it (a view)."""
-    starts = (max(0, (have - asked) // 2) for have, asked in zip(video.shape, shape, strict=False))
-    return video[tuple(slice(start, start + asked) for start, asked in zip(starts, shape, strict=True))]
+    """Cut a video to its centre, at most ``shape`` (frames, height, width) of it; a view."""
+    starts = (max(0, (have - most) // 2) for have, most in zip(video.shape, shape, strict=False))
+    return video[tuple(slice(start, start + most) for start, most in zip(starts, shape, strict=True))]
 
 
 class VideoNoiseField:
-    """The noise of a video, made up to its last transform: `frames` gives it frame by frame, any number of times.
+    """RPN of a video, prepared up to its last transform: `frames` yields its frames, any number of times.
 
     Parameters
     ----------
@@ -71,19 +83,21 @@ class VideoNoiseField:
     shape : tuple of int
         Frames, height and width of the texture.
     seed : int
+        Not negative.
     alpha, profile
         The spot's transition along an axis that is extended, see `microtexture.fourier.spot.window`.
     team : Team
+        The threads that work.
     progress : callable ``(stage, part)``
-        Called between pieces of work with the part of all of it that is done; may raise.
+        Called between pieces of work with the part of all of it that is done; what it raises stops the work.
 
     Attributes
     ----------
     mean : ndarray of float64, shape (C,)
     power : ndarray of float32, shape (height, width // 2 + 1)
-        Squared modulus of the texture, the sum over channels and frequencies in time.
+        Squared modulus of the texture's spectrum, the sum over channels and frequencies in time.
     power_in_time : ndarray of float32, shape (frames, width // 2 + 1)
-        The same over the few rows next to k₁ = 0 alone, by frequency in time: a steady motion is a slanted line.
+        The sum over channels and the few rows next to k₁ = 0, by frequency in time: a steady motion is a slanted line.
     still : float
         Part of the texture's variance that does not change with time, 0–1.
     """
@@ -103,22 +117,22 @@ class VideoNoiseField:
         self._team, self._progress = team, progress
         video = centre_video(video, shape)
         self.mean = video.mean(axis=(0, 1, 2), dtype=np.float64)
-        spectrum = self._of_frames(video)
+        spectrum = self._frame_spectra(video)
         jump = spectrum[:, 0] - spectrum[:, -1]
         if video.shape[:3] == shape:
-            made = self._in_time(spectrum, shape[2], ("random phase", 0.2, 1.0), jump=jump, randomise=True)
+            noise = self._in_time(spectrum, shape[2], ("random phase", 0.2, 1.0), jump=jump, randomise=True)
             gain = 1.0
         else:
             own = self._in_time(spectrum, video.shape[2], ("periodic", 0.2, 0.4), jump=jump)
-            spectrum, still = self._extended(spectrum, video.shape[2])
-            made = self._in_time(spectrum, shape[2], ("random phase", 0.6, 1.0), still=still, randomise=True)
-            gain = sqrt(own.variance / made.variance) if made.variance > 0 else 1.0
+            spectrum, still = self._extend(spectrum, video.shape[2])
+            noise = self._in_time(spectrum, shape[2], ("random phase", 0.6, 1.0), still=still, randomise=True)
+            gain = sqrt(own.variance / noise.variance) if noise.variance > 0 else 1.0
         self._spectrum, self._gain = spectrum, np.float32(gain)
-        self.power, self.power_in_time = (power * np.float32(gain**2) for power in (made.power, made.in_time))
-        self.still = made.still
+        self.power, self.power_in_time = (power * np.float32(gain**2) for power in (noise.power, noise.in_time))
+        self.still = noise.still
 
     def frames(self) -> Iterator[Real]:
-        """Frame by frame, (height, width, C); values may lie outside the video's range."""
+        """Compute frame after frame, (height, width, C); values may lie outside the video's range."""
         mean = self.mean.astype(np.float32)[:, None, None]
         for index in range(self.shape[0]):
             planes: Real = scipy.fft.irfft2(self._spectrum[:, index], s=self.shape[1:], workers=self._team.threads)
@@ -130,7 +144,7 @@ class VideoNoiseField:
         name, begin, end = stage
         self._team.run(task, range(count), lambda part: self._progress(name, begin + (end - begin) * part))
 
-    def _of_frames(self, video: Video) -> Complex:
+    def _frame_spectra(self, video: Video) -> Complex:
         """Half spectra of the frames' periodic components without the mean, (C, T, H, W // 2 + 1)."""
         frames, height, width, channels = video.shape
         spectrum = np.empty((channels, frames, height, width // 2 + 1), np.complex64)
@@ -184,7 +198,7 @@ class VideoNoiseField:
         self._run(transform_rows, height // 2 + 1, stage)
         return measure
 
-    def _extended(self, spectrum: Complex, width: int) -> tuple[Complex, Complex]:
+    def _extend(self, spectrum: Complex, width: int) -> tuple[Complex, Complex]:
         """Spectra of the extended spot's frames, (C, frames, height, columns), and of what stands still in it."""
         channels, count, high, _ = spectrum.shape
         frames, height, across = self.shape
@@ -229,14 +243,14 @@ def video_rpn(
     threads: int = 1,
     progress: Progress | None = None,
 ) -> Real:
-    """RPN of a video in three dimensions, of any length and size.
+    """Synthesize the RPN of a video in three dimensions, of any length and size.
 
     Parameters
     ----------
     video : ndarray, shape (T, H, W, C)
         Any number of channels, any range, finite.
     frames, height, width : int, optional
-        Of the texture; default: the video's. Along a longer axis the spot is extended (see
+        Length and size of the texture; default: the video's. Along a longer axis the spot is extended (see
         `microtexture.fourier.spot`), along a shorter one the video's centre is taken.
     seed : int
         Not negative; the result depends on nothing else.
@@ -268,6 +282,6 @@ def video_rpn(
         raise ValueError("The video holds values that are not finite.")
     shape = (frames or video.shape[0], height or video.shape[1], width or video.shape[2])
     with Team(threads) as team:
-        said = progress or ignore_progress
-        field = VideoNoiseField(video, shape, seed=seed, alpha=alpha, profile=window, team=team, progress=said)
+        report = progress or ignore_progress
+        field = VideoNoiseField(video, shape, seed=seed, alpha=alpha, profile=window, team=team, progress=report)
         return np.stack(list(field.frames()))

@@ -1,4 +1,7 @@
-"""The place of a texture where a patch is matched best, for many patches at once.
+"""Patch matching by exhaustive or random search: the place of a texture that is nearest to a patch, for many patches.
+
+It is not PatchMatch (Barnes et al. 2009), which finds approximate places by propagation: here every candidate is
+compared exactly, and with ``candidates=0`` every place of the texture is one.
 
 The patch of a pattern P is a rectangle about its centre p. At a place q of the texture I it differs by
 
@@ -38,7 +41,7 @@ STREAM = 2  # of the seed's; cells and their random sources have those before
 
 @dataclass(frozen=True)
 class PatternPatches:
-    """What is to be matched, and where.
+    """Patches of a pattern, and the places of the texture that each may take.
 
     Parameters
     ----------
@@ -62,10 +65,16 @@ class PatternPatches:
 
 @dataclass(frozen=True)
 class Matches:
-    """The best places.
+    """Best places of patches.
 
-    ``places`` (n, 2) are rows and columns of q, ``errors`` (n,) the sums of squared differences there, in the values'
-    own unit squared, and ``sizes`` (n,) the patches' pixels.
+    Parameters
+    ----------
+    places : ndarray of int, shape (n, 2)
+        Row and column of q.
+    errors : ndarray of float64, shape (n,)
+        Sum of squared differences there, over pixels and channels, in the values' own unit squared.
+    sizes : ndarray of int, shape (n,)
+        Pixels of the patch.
     """
 
     places: Index
@@ -76,9 +85,10 @@ class Matches:
 def best_matches(
     texture: Real, pattern: Real, patches: PatternPatches, *, peak: float, candidates: int, seed: int, work: Work
 ) -> Matches:
-    """For every patch the candidate where the sum of squared differences is least, the first one of several.
+    """Find for every patch the candidate with the least sum of squared differences, the first one of several.
 
-    Each patch has candidates of its own, drawn uniformly and independently; from one seed, more of them include fewer.
+    Each patch has candidates of its own, drawn uniformly and independently. For one seed, the candidates of a smaller
+    number are a subset of those of a larger one.
 
     Parameters
     ----------
@@ -87,11 +97,17 @@ def best_matches(
         Both with values of [0, ``peak``].
     patches : Patches
     peak : float
+        Greatest value.
     candidates : int
         How many places are drawn for each patch; 0, or as many as there are or more: all are compared.
     seed : int
+        Not negative; draws the candidates.
     work : Work
         Its stage ``"matching"``.
+
+    Returns
+    -------
+    Matches
     """
     search = _Search(_whole(texture, peak), _whole(pattern, peak), patches)
     extents = patches.last - patches.first + 1
@@ -114,13 +130,13 @@ def best_matches(
 
 
 def _whole(image: Real, peak: float) -> Double:
-    """Values as whole numbers of steps, about the middle of their range."""
+    """Round values to whole numbers of steps, about the middle of their range."""
     steps: Double = np.rint(image.astype(np.float64) * (STEPS / peak))
     return steps - STEPS // 2
 
 
 class _Search:
-    """Keeps, for each patch, the best place found and its distance in steps squared."""
+    """Best place of each patch so far, and its distance in steps squared."""
 
     def __init__(self, texture: Double, pattern: Double, patches: PatternPatches) -> None:
         self._texture, self._pattern, self._patches = texture, pattern, patches
@@ -144,7 +160,7 @@ class _Search:
             self.errors[patch], self.places[patch] = error, place
 
     def among(self, patch: int, places: Index) -> None:
-        """Compare a patch with the given places (N, 2)."""
+        """Compare a patch with some places (N, 2)."""
         height, width = self._shapes[patch]
         channels = self._texture.shape[2]
         y, x = (places + self._tops[patch]).T
@@ -187,7 +203,7 @@ class _Search:
                 yield
 
     def _energies(self, begin: Index, end: Index, shape: Index) -> Double:
-        """Σ |I|² over rectangles of a shape with their upper left corners from ``begin`` to ``end`` − 1."""
+        """Compute Σ |I|² over rectangles of a shape with their upper left corners from ``begin`` to ``end`` − 1."""
         (top, left), (bottom, right), (height, width) = begin, end, shape
         rows, lower = slice(top, bottom), slice(top + height, bottom + height)
         columns, further = slice(left, right), slice(left + width, right + width)
@@ -198,7 +214,7 @@ class _Search:
         return energies
 
     def _spectra(self, chosen: Index, tile: int) -> NDArray[np.complex128]:
-        """Conjugate spectra of patches, shape (C, patches, tile, tile // 2 + 1)."""
+        """Compute the conjugate spectra of patches, shape (C, patches, tile, tile // 2 + 1)."""
         planes = np.zeros((self._texture.shape[2], len(chosen), tile, tile))
         for number, patch in enumerate(chosen.tolist()):
             height, width = self._shapes[patch]
@@ -207,7 +223,7 @@ class _Search:
         return np.conj(spectra, out=spectra)
 
     def _correlations(self, spectra: NDArray[np.complex128], top: int, left: int, tile: int) -> Double:
-        """Σ P · I for patches with their upper left corners everywhere in a tile, shape (patches, tile, tile)."""
+        """Compute Σ P · I for patches with their upper left corners everywhere in a tile, (patches, tile, tile)."""
         part = self._texture[top : top + tile, left : left + tile].transpose(2, 0, 1)
         of_part = fft.rfft2(part, (tile, tile))
         product = spectra[0] * of_part[0]

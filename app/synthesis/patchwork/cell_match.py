@@ -1,4 +1,4 @@
-"""Where each cell of a pattern is best taken from in a texture: a source for every cell.
+"""Cell matching: for every cell of a pattern the source in a texture that is nearest to it.
 
 The patch that is compared is a square about the cell's centre with sides of one and a half spacings: it holds the cell
 and where it blends most with its neighbours. Patches chosen for the cell alone stand out from what surrounds them in
@@ -23,28 +23,30 @@ HALF = 0.75  # of a square's side, in spacings
 def match_cells(
     texture: Real, pattern: Real, cells: Cells, *, peak: float, candidates: int, seed: int, work: Work
 ) -> Matches:
-    """The source of every cell that matches the pattern best, among some candidates or all.
+    """Find the source of every cell that is nearest to the pattern, among some candidates or all.
 
     Parameters
     ----------
     texture : ndarray of float32, shape (H', W', C)
         At least `microtexture.patchwork.cells.least_sample` pixels a side.
     pattern : ndarray of float32, shape (H, W, C)
-        Of the size of the cells' plane; its values are in the texture's unit.
+        Of the size of the cells' plane; values in the texture's unit.
     cells : Cells
         Of a plane, not of a torus.
     peak : float
-        Of the texture's values, which are in [0, ``peak``].
+        Greatest value of the texture; the least is 0.
     candidates : int
-        How many places are compared for each cell; 0: all. From one seed, more of them include fewer.
+        How many places are compared for each cell; 0: all. For one seed, the candidates of a smaller number are a
+        subset of those of a larger one.
     seed : int
+        Not negative; draws the candidates.
     work : Work
         Its stage ``"matching"``.
 
     Returns
     -------
     Matches
-        For each of ``cells.count`` cells.
+        One of each of ``cells.count`` cells.
     """
     boxes = _squares(cells)
     compared = boxes - np.repeat(cells.centres, 2, axis=1)
@@ -57,7 +59,7 @@ def match_cells(
 
 
 def _squares(cells: Cells) -> Ints:
-    """What is compared of the plane for every cell: what its square has of it, or the border where it is nearest."""
+    """Cut every cell's square to the plane; of one that lies outside, take the border nearest to it."""
     half = round(HALF * cells.unit)
     size = np.array((cells.height, cells.width))
     boxes = np.empty((cells.count, 4), np.int64)

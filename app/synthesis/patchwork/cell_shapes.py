@@ -1,4 +1,4 @@
-"""How far the cells of a jittered grid reach: found out on a lattice of points, for all cells at once.
+"""Extents of the cells of a jittered grid, measured on a lattice of points for all cells at once.
 
 The part that a cell has of a pixel x is w_i(x) / sqrt(Σ_j w_j(x)²), with the weights of
 `microtexture.patchwork.cells`. Where it is at least some share s, d(x, p_i) ≤ T_s(x) with a distance T_s that depends
@@ -27,7 +27,7 @@ EPSILON = 1e-5  # what single precision may be wrong by
 
 
 def log_weight(d: Double, sharpness: float) -> Double:
-    """log(d^(−f) − R^(−f)) of distances in spacings, −∞ from R on.
+    """Compute log(d^(−f) − R^(−f)) of distances in spacings, −∞ from R on.
 
     Examples
     --------
@@ -52,6 +52,7 @@ class Axis:
 
     @property
     def spacing(self) -> float:
+        """Pixels from one square to the next."""
         return self.size / self.count
 
     @property
@@ -61,7 +62,7 @@ class Axis:
         return edges
 
     def jittered(self, jitter: Double, axis: int) -> Ints:
-        """Places in the squares along ``axis`` of an array of numbers of [0, 1)."""
+        """Turn an array of numbers of [0, 1) into places in the squares, which lie along ``axis`` of it."""
         shape = (-1, 1) if axis == 0 else (1, -1)
         first, length = self.edges[:-1].reshape(shape), np.diff(self.edges).reshape(shape)
         places: Ints = first + (length * ((1 - JITTER) / 2 + JITTER * jitter)).astype(np.int64)
@@ -72,7 +73,7 @@ class Axis:
         return min(LATTICE, ceil(self.spacing))
 
     def points(self) -> Ints:
-        """Pixels at which shapes are found out, from the first to the last of each square, shape (points, count)."""
+        """List the pixels at which shapes are measured, from the first to the last of each square: (points, count)."""
         edges = self.edges[self.beyond : self.beyond + self.count + 1]
         along = self._along
         points: Ints = edges[:-1] + np.arange(along)[:, None] * (np.diff(edges) - 1) // max(1, along - 1)
@@ -84,25 +85,32 @@ class Axis:
         return ceil((ceil(self.spacing) - 1) / max(1, self._along - 1)) // 2
 
     def gap(self, offset: int) -> float:
-        """Pixels that a centre is away at least from points of a square so many squares before or behind its own."""
+        """Least distance, in pixels, of a centre from the points of a square that many squares away."""
         return max(0.0, (abs(offset) - 1 + (1 - JITTER) / 2) * self.spacing - ROUNDING)
 
 
 def thresholds(
     squares: Callable[[], Iterable[Real]], sharpness: float, shares: tuple[float, ...], off: float = 0.0
 ) -> list[Real]:
-    """Squared distances T_s(x)² up to which a centre's part of a pixel can be a share s, in spacings.
+    """Compute the squared distances T_s(x)² up to which a centre's part of a pixel can be a share s.
 
     Parameters
     ----------
     squares : callable
-        Gives the squared distances of each pixel to one centre after another, arrays of one shape.
+        Yields the squared distances, in spacings, of each pixel to one centre after another, arrays of one shape.
     sharpness : float
+        f.
     shares : tuple of float
         1 means the largest part of all.
     off : float
-        Make them so large that a centre which is that near to a pixel at most so many spacings aside counts too: there
-        the distance to a centre differs by no more than that, and T_s by no more than T_s / nearest times that.
+        Spacings by which a pixel may lie beside the point that is looked at: the distances are enlarged so that they
+        hold there too, where the distance to a centre differs by at most ``off``, and T_s by at most T_s / nearest
+        times ``off``.
+
+    Returns
+    -------
+    list of ndarray of float32
+        One of each share, in spacings squared.
     """
     nearest = reduce(np.minimum, squares())
     np.maximum(nearest, LEAST_SQUARE, out=nearest)
@@ -126,7 +134,7 @@ def thresholds(
 
 @lru_cache(maxsize=64)
 def farthest(sharpness: float, share: float) -> float:
-    """How many spacings a cell's part of at least ``share`` can reach at most, wherever the centres lie.
+    """Bound, in spacings, how far a cell's part of at least ``share`` can reach, wherever the centres lie.
 
     Every other centre is put where its square's jitter takes it farthest from the pixel.
     """
@@ -150,7 +158,7 @@ class _Band:
         self._unit = max(axis.spacing for axis in axes)
 
     def around(self, distance: float) -> Iterator[tuple[int, int, float]]:
-        """Offsets of squares, in rows and columns, whose centres may be nearer than a distance, and how near."""
+        """Yield the offsets of squares, in rows and columns, whose centres may be within a distance, and how near."""
         rows, columns = self._axes
         for dr in range(-rows.beyond, rows.beyond + 1):
             for dc in range(-columns.beyond, columns.beyond + 1):
@@ -159,28 +167,28 @@ class _Band:
                     yield dr, dc, nearest
 
     def squares(self, dr: int, dc: int) -> tuple[slice, slice]:
-        """Where the squares at an offset are in arrays over all squares."""
+        """Index the squares at an offset in arrays over all squares."""
         top, left = self._first + self._axes[0].beyond + dr, self._axes[1].beyond + dc
         return slice(top, top + self._rows.shape[1]), slice(left, left + self._columns.shape[2])
 
     def away(self, dr: int, dc: int) -> tuple[Real, Real]:
-        """Pixels from the centre at an offset to each row, shape (points, R, C), and to each column of points."""
+        """Compute the pixels from the centre at an offset to each row, (points, R, C), and each column of points."""
         where = self.squares(dr, dc)
         return (self._rows - self._y[where]).astype(np.float32), (self._columns - self._x[where]).astype(np.float32)
 
     def distances(self, dy: Real, dx: Real) -> Real:
-        """Squared distances in spacings, shape (points along y, points along x, R, C)."""
+        """Compute squared distances in spacings, shape (points along y, points along x, R, C)."""
         scale = np.float32(1 / self._unit)
         square: Real = ((dy * scale) ** 2)[:, None] + ((dx * scale) ** 2)[None, :]
         return square
 
     def near(self) -> Iterator[Real]:
-        """Those to the centres that matter most."""
+        """Yield the squared distances to the centres that matter most."""
         return (self.distances(*self.away(dr, dc)) for dr, dc, _ in self.around(NEAR))
 
 
 def extents(rows: Axis, columns: Axis, y: Ints, x: Ints, sharpness: float, shares: tuple[float, ...]) -> Real:
-    """Boxes relative to the centres, outside of which their parts of the plane's pixels are less than a share.
+    """Compute boxes relative to the centres, outside of which their parts of the pixels are less than a share.
 
     Parameters
     ----------
@@ -227,5 +235,17 @@ def extents(rows: Axis, columns: Axis, y: Ints, x: Ints, sharpness: float, share
 
 
 def reach(unit: float, sharpness: float, share: float) -> int:
-    """`farthest` in pixels, for centres on whole ones."""
+    """Round `farthest` up to pixels, for centres on whole pixels.
+
+    Parameters
+    ----------
+    unit : float
+        A spacing, in pixels.
+    sharpness, share : float
+        Those of `farthest`.
+
+    Returns
+    -------
+    int
+    """
     return ceil(farthest(sharpness, share) * unit) + ROUNDING

@@ -27,10 +27,10 @@ from numpy.random import SFC64, Generator, SeedSequence
 from ..arrays import Ints, Real
 from .cell_shapes import Axis, extents, log_weight, reach
 
-LEFT_OUT = 1 / 512  # of a pixel: a part that is smaller changes an 8-bit value by less than a half
+LEFT_OUT = 1 / 512  # of a pixel: a smaller part changes an 8-bit value by less than a half
 LOG_LEFT_OUT = np.float32(log(LEFT_OUT))
 BLEND = 1 / 16  # of a pixel: a cell's blend zone is where its part is larger
-SLACK = 0.1  # of a spacing by which the squares may be wider than asked for, all of them together
+SLACK = 0.1  # of a spacing: how much wider all squares together may be than the grid parameter says
 AT_CENTRE = 30.0  # logarithm of how much heavier a centre is than the pixel beside it
 
 
@@ -44,7 +44,7 @@ class Window(NamedTuple):
 
 
 class Part(NamedTuple):
-    """What one centre has of a window.
+    """Part of a window that one centre has.
 
     ``rows`` and ``columns`` are slices into the window; ``weight`` is (rows, columns) float32, as a part of the largest
     weight at each pixel; ``source`` = (y, x) is what must be added to a place of the window to be relative to the
@@ -77,8 +77,8 @@ class Cells:
     centres : ndarray of int64, shape (N, 2)
         p_i as (y, x), N ≥ ``count``: centres outside the plane reach into it too.
     cell : ndarray of int64, shape (N,)
-        The cell of each centre, 0 … count − 1. On the torus a cell has a centre at every turn, which must all be given
-        the same source; otherwise every centre is a cell of its own.
+        The cell of each centre, 0 … count − 1. On the torus a cell has a centre at every turn, which must all have the
+        same source; otherwise every centre is a cell of its own.
     boxes : ndarray of int64, shape (N, 4)
         In the plane, cut at its border: outside it a centre's part of a pixel is less than 1/512.
     zones : ndarray of int64, shape (count, 4)
@@ -101,6 +101,7 @@ class Cells:
 
     @property
     def plane(self) -> Window:
+        """The whole plane."""
         return Window(0, self.height, 0, self.width)
 
     @cached_property
@@ -115,7 +116,7 @@ class Cells:
         return table.astype(np.float32)
 
     def reaching(self, window: Window, among: Ints | None = None) -> Ints:
-        """Centres whose boxes meet a window, of all or of some."""
+        """List the centres whose boxes meet a window, among all or among some."""
         boxes = self.boxes if among is None else self.boxes[among]
         top, bottom, left, right = boxes.T
         found = (top < window.bottom) & (bottom > window.top) & (left < window.right) & (right > window.left)
@@ -123,14 +124,14 @@ class Cells:
         return indices if among is None else among[indices]
 
     def parts(self, window: Window, among: Ints | None = None) -> list[Part]:
-        """Every centre's weights in a window.
+        """Compute every centre's weights in a window.
 
         Parameters
         ----------
         window : Window
             Inside the plane.
         among : ndarray of int64, optional
-            Centres to look at, where those that reach the window are known to be among them.
+            Centres that include all that reach the window; default: all.
 
         Returns
         -------
@@ -160,7 +161,7 @@ class Cells:
         return parts
 
     def _logs(self, index: int, box: list[int], window: Window) -> tuple[slice, slice, Real]:
-        """Where in a window a box lies, and the logarithms of a centre's weights there."""
+        """Find where in a window a box lies, and the logarithms of a centre's weights there."""
         (y, x), (top, bottom, left, right) = self.centres[index].tolist(), box
         top, bottom = max(top, window.top), max(window.top, min(bottom, window.bottom))
         left, right = max(left, window.left), max(window.left, min(right, window.right))
@@ -169,14 +170,14 @@ class Cells:
         return slice(top - window.top, bottom - window.top), slice(left - window.left, right - window.left), logs
 
     def sources(self, height: int, width: int, seed: int) -> Ints:
-        """A source for every cell: places q_i of a sample, drawn so that the cell's blend zone lies inside it.
+        """Draw a source for every cell: a place q_i of a sample such that the cell's blend zone lies inside the sample.
 
         The faint rest of a cell, less than 1/16 of a pixel, may reach over the border, by `margin` pixels at most.
 
         Parameters
         ----------
         height, width : int
-            Of the sample, at least `least_sample`.
+            Size of the sample in pixels, each at least `least_sample`.
         seed : int
             Not negative.
 
@@ -197,7 +198,19 @@ class Cells:
         return random_numbers(seed, 1).integers(lows, highs, endpoint=True)
 
     def margin(self, sources: Ints, height: int, width: int) -> int:
-        """How many pixels beyond a sample's border the boxes reach from these sources: to be filled by mirroring."""
+        """Compute how far the boxes reach beyond a sample's border, where its mirror image is shown.
+
+        Parameters
+        ----------
+        sources : ndarray of int64, shape (count, 2)
+        height, width : int
+            Size of the sample, in pixels.
+
+        Returns
+        -------
+        int
+            Pixels.
+        """
         start = sources[self.cell] - self.centres
         first = self.boxes[:, ::2] + start
         last = self.boxes[:, 1::2] + start - (height, width)
@@ -205,14 +218,18 @@ class Cells:
 
 
 def least_sample(height: int, width: int, grid: int, sharpness: float) -> int:
-    """Pixels that each side of a sample must have, so that every blend zone lies inside, whatever the seed.
+    """Compute how many pixels each side of a sample must have to hold every blend zone, whatever the seed.
 
     Parameters
     ----------
     height, width : int
-        Of the plane.
-    grid : int
-    sharpness : float
+        Size of the plane, in pixels.
+    grid, sharpness
+        Those of `jittered_cells`.
+
+    Returns
+    -------
+    int
 
     Examples
     --------
@@ -224,12 +241,12 @@ def least_sample(height: int, width: int, grid: int, sharpness: float) -> int:
 
 
 def jittered_cells(height: int, width: int, *, grid: int, sharpness: float, tileable: bool, seed: int) -> Cells:
-    """Cells about a jittered grid.
+    """Lay cells about the points of a jittered grid.
 
     Parameters
     ----------
     height, width : int
-        Of the plane, at least 1.
+        Size of the plane in pixels, each at least 1.
     grid : int
         Spacing in pixels, at least 4; it becomes smaller, or at most a tenth larger, so that whole squares fit.
     sharpness : float
@@ -238,6 +255,10 @@ def jittered_cells(height: int, width: int, *, grid: int, sharpness: float, tile
         Measure distances on the torus. Otherwise cells beyond the plane's border also take part.
     seed : int
         Not negative.
+
+    Returns
+    -------
+    Cells
 
     Examples
     --------
@@ -282,7 +303,7 @@ def jittered_cells(height: int, width: int, *, grid: int, sharpness: float, tile
 
 
 def random_numbers(seed: int, stream: int) -> Generator:
-    """Random numbers of their own for each purpose."""
+    """Make a generator of random numbers, independent of those of other streams of the same seed."""
     return Generator(SFC64(SeedSequence(seed, spawn_key=(stream,))))
 
 

@@ -32,7 +32,7 @@ def _never_stop() -> None:
 
 
 class SamplePatches:
-    """What every part of a plane shows of a sample: its pixels at x − p_i + q_i.
+    """Pixels of a sample that the cells show: those at x − p_i + q_i.
 
     Parameters
     ----------
@@ -50,23 +50,23 @@ class SamplePatches:
         self._start = sources[cells.cell] + margin
 
     def pixels(self, part: Part) -> Real:
-        """Pixels of a part, shape (C, rows, columns); not to be written to."""
+        """Return the pixels that a part shows, shape (C, rows, columns), read-only."""
         y, x = self._start[part.centre] + part.source
         return self._planes[:, y + part.rows.start : y + part.rows.stop, x + part.columns.start : x + part.columns.stop]
 
 
 class Patchwork:
-    """A sample's patches on some cells: `rows` joins any of them.
+    """Patches of a sample on cells; `rows` joins them.
 
     Parameters
     ----------
     h : ndarray of float32, shape (H, W, C)
         The sample.
     cells : Cells
-        Those of the texture, with weights that end or that do not.
+        Of the texture's size, with weights that end or that do not.
     blend : {"deviation", "feather", "sharp"}
-        Keep the standard deviation in the joins, feather them, or let each pixel have the cell of the nearest centre:
-        that of cells with weights that end.
+        Keep the standard deviation in the joins, feather them, or show at each pixel the cell of the nearest centre;
+        "sharp" needs weights that end.
     seed : int
         Not negative; draws the sources.
 
@@ -89,9 +89,17 @@ class Patchwork:
         self._patches = SamplePatches(h.transpose(2, 0, 1) - self._mean[:, None, None], cells, self.sources)
 
     def rows(self, top: int, bottom: int, checkpoint: Checkpoint = _never_stop) -> Real:
-        """Rows ``top`` to ``bottom`` − 1 of the texture, shape (C, bottom − top, width), any time and in any order.
+        """Compute rows ``top`` to ``bottom`` − 1 of the texture, any number of times and in any order.
 
-        ``checkpoint`` is called between patches; what it raises stops the work.
+        Parameters
+        ----------
+        top, bottom : int
+        checkpoint : callable, optional
+            Called between patches; what it raises stops the work.
+
+        Returns
+        -------
+        ndarray of float32, shape (C, bottom − top, width)
         """
         out = np.zeros((len(self._mean), bottom - top, self.cells.width), np.float32)
         _join(out, top, self.cells, self._patches.pixels, self._blend, checkpoint)
@@ -102,17 +110,19 @@ class Patchwork:
 def paint_cells(
     cells: Cells, colours: Real, top: int, bottom: int, *, soft: bool = True, checkpoint: Checkpoint = _never_stop
 ) -> Real:
-    """Rows of a picture of the cells, as in the report's figure 2.
+    """Paint rows of a picture of the cells, as in the report's figure 2.
 
     Parameters
     ----------
     cells : Cells
     colours : ndarray of float32, shape (cells.count, C)
+        One of each cell.
     top, bottom : int
+        First and last-plus-one row.
     soft : bool
         Mix the colours by the weights, so that the picture shows f.
-    checkpoint : callable
-        See `Patchwork.rows`.
+    checkpoint : callable, optional
+        Called between cells; what it raises stops the work.
 
     Returns
     -------
@@ -125,14 +135,14 @@ def paint_cells(
 
 
 def band_rows(cells: Cells) -> int:
-    """How many rows are best joined at once."""
+    """Return how many rows are best joined at once."""
     return BAND if cells.ends else SMALL_BAND
 
 
 def _join(
     out: Real, top: int, cells: Cells, show: Callable[[Part], Real], blend: Blend, checkpoint: Checkpoint
 ) -> None:
-    """Put together what every part shows, into rows that begin at ``top`` and hold zeros."""
+    """Join what the parts show in rows from ``top`` on, which hold zeros."""
     bottom = top + out.shape[1]
     among = cells.reaching(Window(top, bottom, 0, cells.width))
     wide = TILE if cells.ends else SMALL_TILE
@@ -168,33 +178,40 @@ def patchwork(
     threads: int = 1,
     progress: Progress | None = None,
 ) -> Real:
-    """The patchwork of a sample as one array.
+    """Synthesize a patchwork of a sample as one array.
 
     Parameters
     ----------
     h : ndarray of float32, shape (H, W, C)
         The sample, at least `microtexture.patchwork.cells.least_sample` pixels each way.
     height, width : int
-        Of the texture.
+        Size of the texture, in pixels.
     grid : int
         Spacing of the cells in pixels, at least 4.
     sharpness : float
         f, 1–40.
     blend : {"deviation", "feather", "sharp"}
+        See `Patchwork`.
     reach : {"all", "near"}
         Whether all cells count at a pixel, or the weights end; see `microtexture.patchwork.unbounded_cells`.
     tileable : bool
-        On a torus.
+        Whether opposite borders continue each other.
     seed : int
         Not negative.
     threads : int
         The result does not depend on it.
     progress : callable ``(stage, part)``, optional
+        Called between blocks of rows; what it raises stops the work.
 
     Returns
     -------
     ndarray of float32, shape (height, width, C)
         Values may lie outside the sample's range.
+
+    Raises
+    ------
+    ValueError
+        If the sample does not hold the cells.
 
     Examples
     --------
@@ -205,14 +222,14 @@ def patchwork(
     cells = jittered_cells(height, width, grid=grid, sharpness=sharpness, tileable=tileable, seed=seed)
     if blend != "sharp":
         cells = cells_with_reach(cells, reach, tileable=tileable)
-    made = Patchwork(h, cells, blend=blend, seed=seed)
+    joined = Patchwork(h, cells, blend=blend, seed=seed)
     texture = np.empty((height, width, h.shape[2]), np.float32)
     store = array_sink(texture)
     with Team(threads) as team:
         work = Work(team, progress or ignore_progress)
         work.run(
             "texture",
-            lambda rows: store(rows[0], made.rows(*rows, work.checkpoint)),
+            lambda rows: store(rows[0], joined.rows(*rows, work.checkpoint)),
             row_blocks(height, band_rows(cells)),
         )
     return texture

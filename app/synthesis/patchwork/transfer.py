@@ -37,10 +37,16 @@ TINY = 1e-30  # instead of 0, for a cell whose box holds no pixel that it has a 
 
 @dataclass(frozen=True)
 class Transfer:
-    """A pattern rendered in a texture.
+    """Result of `transfer`.
 
-    ``output`` and ``average``, the feathered averages Σ a_i w_i / Σ w_i, are (H, W, C) float32; ``matches`` are the
-    cells' sources and errors.
+    Parameters
+    ----------
+    output : ndarray of float32, shape (H, W, C)
+        The pattern rendered in the texture, values of [0, peak].
+    average : ndarray of float32, shape (H, W, C)
+        The feathered averages Σ a_i w_i / Σ w_i.
+    matches : Matches
+        Sources and errors of the cells.
     """
 
     output: Real
@@ -49,7 +55,7 @@ class Transfer:
 
 
 def rescale(pattern: Real, texture: Real) -> Real:
-    """The pattern with the mean and the range of the texture, channel by channel.
+    """Give a pattern the mean and the range of a texture, channel by channel.
 
     Parameters
     ----------
@@ -92,36 +98,42 @@ def transfer(
     texture : ndarray of float32, shape (H', W', C)
         At least `microtexture.patchwork.cells.least_sample` pixels a side; values of [0, ``peak``].
     pattern : ndarray of float32, shape (H, W, C)
-        Of the size of the cells' plane; its values are in the texture's unit.
+        Of the size of the cells' plane; values in the texture's unit.
     cells : Cells
         Of a plane, not of a torus, with weights that end.
     reach : {"all", "near"}
-        Whether all of them count at a pixel or the weights end, as for the search; see
+        Whether all cells count at a pixel, or the weights end as they do for the search; see
         `microtexture.patchwork.unbounded_cells`.
     peak : float
+        Greatest value of the texture.
     candidates : int
-        Among how many places of the texture the best is chosen for each cell, at random; 0: among all.
+        How many places of the texture, drawn at random, are compared for each cell; 0: all.
     seed : int
+        Not negative; draws the candidates.
     work : Work
         Its stages ``"matching"``, ``"averages"`` and ``"texture"``.
+
+    Returns
+    -------
+    Transfer
     """
     matches = match_cells(texture, pattern, cells, peak=peak, candidates=candidates, seed=seed, work=work)
-    mosaic = _Mosaic(texture, matches.places, cells_with_reach(cells, reach, tileable=False))
-    averages = mosaic.averages(work)
+    patches = _LaidPatches(texture, matches.places, cells_with_reach(cells, reach, tileable=False))
+    averages = patches.averages(work)
     output, average = np.empty(pattern.shape, np.float32), np.empty(pattern.shape, np.float32)
 
     def join(window: Window) -> None:
         there = slice(window.top, window.bottom), slice(window.left, window.right)
-        deviations, feathered = mosaic.joined(window, averages, work.checkpoint)
+        deviations, feathered = patches.join(window, averages, work.checkpoint)
         average[there] = feathered.transpose(1, 2, 0)
         feathered += deviations
         output[there] = feathered.transpose(1, 2, 0).clip(0, peak)
 
-    work.run("texture", join, mosaic.windows)
+    work.run("texture", join, patches.windows)
     return Transfer(output, average, matches)
 
 
-class _Mosaic:
+class _LaidPatches:
     """Patches of a texture, laid over the plane."""
 
     def __init__(self, texture: Real, sources: Ints, cells: Cells) -> None:
@@ -134,7 +146,7 @@ class _Mosaic:
         ]
 
     def averages(self, work: Work) -> Real:
-        """Every patch's average, shape (centres, C)."""
+        """Compute every patch's average, shape (centres, C)."""
         found: dict[Window, tuple[list[int], list[Double]]] = {}
 
         def add(window: Window) -> None:
@@ -158,8 +170,8 @@ class _Mosaic:
         averages: Real = (totals[:, :-1] / np.maximum(totals[:, -1:], TINY)).astype(np.float32)
         return averages
 
-    def joined(self, window: Window, averages: Real, checkpoint: Checkpoint) -> tuple[Real, Real]:
-        """The two terms of equation (7), both (C, rows, columns); ``checkpoint`` raises to stop."""
+    def join(self, window: Window, averages: Real, checkpoint: Checkpoint) -> tuple[Real, Real]:
+        """Compute the two terms of equation (7), both (C, rows, columns)."""
         shape = (window.bottom - window.top, window.right - window.left)
         deviations, feathered = np.zeros((2, self._channels, *shape), np.float32)
         total, norm = np.zeros((2, *shape), np.float32)

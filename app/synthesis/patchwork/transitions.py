@@ -1,6 +1,6 @@
-"""Sequences of any length from the frames of a clip, which are rearranged in time only.
+"""Transitions in time: sequences of any length from the frames of a clip, rearranged in time only.
 
-Frames p_i of the new sequence are given frames q_i of the clip, and between p_i and p_{i+1} the part of the clip
+Frames p_i of the new sequence are frames q_i of the clip, and between p_i and p_{i+1} the part of the clip
 around q_i passes over into the part around q_{i+1}:
 
     N(x, t) = (w₁ I(x, t − p_i + q_i) + w₂ I(x, t − p_{i+1} + q_{i+1}) − A(x)) / √(w₁² + w₂²) + A(x),
@@ -21,7 +21,7 @@ from ..arrays import Double, Ints, Real
 
 
 def longest_interval(clip: int, frames: int, loop: bool) -> int:
-    """The greatest number of frames between transitions for which a clip is long enough.
+    """Find the greatest number of frames between transitions for which a clip is long enough.
 
     Parameters
     ----------
@@ -31,6 +31,10 @@ def longest_interval(clip: int, frames: int, loop: bool) -> int:
         Frames of the sequence.
     loop : bool
         Whether the sequence is circular.
+
+    Returns
+    -------
+    int
 
     Examples
     --------
@@ -42,7 +46,7 @@ def longest_interval(clip: int, frames: int, loop: bool) -> int:
 
 @dataclass(frozen=True)
 class FrameMix:
-    """What one frame of each of n sequences is made of: α I(first) + β I(second) + (1 − α − β) A.
+    """Composition of one frame of each of n sequences: α I(first) + β I(second) + (1 − α − β) A.
 
     ``first`` and ``second`` are frames of the clip; α² + β² = 1.
     """
@@ -54,16 +58,16 @@ class FrameMix:
 
 
 class Transitions:
-    """Where and with what n independent sequences pass from one part of a clip to another.
+    """Transition points of n independent sequences, and the parts of the clip between which each passes over.
 
     The transition points are jittered: one in the middle half of each of equal parts of the sequence that are at most
-    ``interval`` frames long. The clip's frames around them are drawn at random among those for which every frame that
-    is asked for lies inside the clip.
+    ``interval`` frames long. The clip's frames around them are drawn at random among those for which every frame
+    that is used lies inside the clip.
 
     Parameters
     ----------
     sequences : int
-        n.
+        n, the number of sequences.
     clip : int
         Frames of the clip.
     frames : int
@@ -95,7 +99,7 @@ class Transitions:
         self._p, self._shift = p, q - p
 
     def mix(self, frame: int) -> FrameMix:
-        """What frame number ``frame``, 0 ≤ frame < ``frames``, of every sequence is made of."""
+        """Compute the composition of frame number ``frame``, 0 ≤ frame < ``frames``, of every sequence."""
         rows, column = self._interval(frame)
         w1, w2 = self._weights(frame, rows, column)
         scale = 1 / np.hypot(w1, w2)
@@ -105,7 +109,7 @@ class Transitions:
         return FrameMix(first, second, (w1 * scale).astype(np.float32), (w2 * scale).astype(np.float32))
 
     def sources(self, frame: int) -> Double:
-        """Where in the clip every sequence's frame comes from, w₁ q_i + w₂ q_{i+1}: for pictures."""
+        """Compute where in the clip every sequence's frame comes from, w₁ q_i + w₂ q_{i+1}, for pictures."""
         rows, column = self._interval(frame)
         w1, w2 = self._weights(frame, rows, column)
         q = self._p + self._shift
@@ -113,7 +117,7 @@ class Transitions:
         return between
 
     def _interval(self, frame: int) -> tuple[Ints, Ints]:
-        """Every sequence and the number of the transition point that a frame follows in it."""
+        """Number the sequences, and the transition point that a frame follows in each."""
         part = int(np.searchsorted(self._edges, frame, side="right")) - 1
         return np.arange(len(self._p)), np.where(self._p[:, part] <= frame, part, part - 1)
 
@@ -124,7 +128,7 @@ class Transitions:
 
 
 class _Arrangement:
-    """The parts of a sequence, with one before and one after it, and the bounds of the points in them.
+    """Parts of a sequence, with one before and one after it, and the bounds of the points in them.
 
     ``edges[k]`` is the first frame of part k; its point lies in ``low[k]`` … ``high[k] − 1``.
     """
@@ -141,7 +145,7 @@ class _Arrangement:
 
     @property
     def span(self) -> int:
-        """Frames that a clip needs at most for the frames between two neighbours of a point."""
+        """Most frames of a clip that are used between two neighbours of a point."""
         if self._loop and self._count < 3:
             return 2 * self._frames // self._count - 1
         first, last = self.low[:-2] + 1, self.high[2:] - 2

@@ -1,11 +1,11 @@
-"""Cells whose weights never end: the full sum of Harrison's equations (1) and (2) where f is low.
+"""Unbounded cells, whose weights never end: the full sum of Harrison's equations (1) and (2) where f is low.
 
     w_i(x) = d(x, p_i)^(−f),   Σ_i over all cells.
 
 Whether far cells count depends on f. Their patches are independent, so they add √(Σ w²) over them to what nearer ones
 add: over the cells beyond the distance r that is as much as r^(1 − f). From f = 6 on, nothing of it is seen beyond
 three spacings, where the weights of `microtexture.patchwork.cells` end. For f ≤ 1 it does not even converge, and the
-texture depends on how many cells there are. So it must be said which they are:
+texture depends on how many cells there are. They are:
 
 - on a torus the n cells of the plane, each once, d being the distance on the torus: at its nearest turn. Where a cell
   changes from one turn to the next its weight goes on steadily, and what it shows jumps by the little that is left of
@@ -39,13 +39,15 @@ LEFT_OUT = 1 / 100  # of the sample's deviation: half a level of 50
 LEAST = 6.0  # spacings up to which all cells count, so that single values are right too
 SMALL = 2.0  # spacings
 UNIT, AT_CENTRE = 1e13, 1e18  # weight at one pixel, and at the centre: their squares, and far ones', are numbers
-ROWS = 1 << 10  # of the table, that are computed at once
+ROWS = 1 << 10  # rows of the table that are computed at once
 
 Reach = Literal["all", "near"]
 
 
 def radius(sharpness: float) -> float:
-    """Spacings beyond which all cells together are `LEFT_OUT`: ∫ r^(−2f) 2πr dr against the four cells of a corner.
+    """Compute the spacings beyond which all cells together are `LEFT_OUT`.
+
+    That is ∫ r^(−2f) 2πr dr against the four cells of a corner.
 
     Examples
     --------
@@ -60,7 +62,22 @@ def radius(sharpness: float) -> float:
 
 
 def span(length: int, unit: float, sharpness: float, tileable: bool) -> tuple[int, int]:
-    """Pixels before and after a centre in which its cell counts, along an axis of the plane.
+    """Compute the pixels before and after a centre in which its cell counts, along an axis of the plane.
+
+    Parameters
+    ----------
+    length : int
+        Pixels of the plane along the axis.
+    unit : float
+        The spacing, in pixels.
+    sharpness : float
+        f.
+    tileable : bool
+        Whether the axis is circular.
+
+    Returns
+    -------
+    before, after : int
 
     Examples
     --------
@@ -77,7 +94,21 @@ def span(length: int, unit: float, sharpness: float, tileable: bool) -> tuple[in
 
 
 def count_terms(height: int, width: int, grid: int, sharpness: float, tileable: bool) -> int:
-    """How many products of a weight and a pixel the sum has, about: pixels times the cells that count at each.
+    """Estimate how many products of a weight and a pixel the sum has: pixels times the cells that count at each.
+
+    Parameters
+    ----------
+    height, width : int
+        Size of the plane, in pixels.
+    grid : int
+        The spacing, in pixels.
+    sharpness : float
+        f.
+    tileable : bool
+
+    Returns
+    -------
+    int
 
     Examples
     --------
@@ -92,20 +123,32 @@ def count_terms(height: int, width: int, grid: int, sharpness: float, tileable: 
 
 
 def table_bytes(height: int, width: int, grid: float, sharpness: float, tileable: bool) -> int:
-    """Bytes of the weights."""
+    """Compute the bytes that the table of weights takes.
+
+    Parameters
+    ----------
+    height, width, grid, sharpness, tileable
+        Those of `count_terms`.
+
+    Returns
+    -------
+    int
+    """
     down, across = (2 * max(span(length, grid, sharpness, tileable)) + 1 for length in (height, width))
     return 4 * (down * across + ROWS * across * 4)
 
 
 def cells_with_reach(cells: Cells, reach: Reach, *, tileable: bool) -> Cells:
-    """The same cells with weights that do not end; or themselves, where that makes no difference or is not asked for.
+    """Make the same cells with weights that do not end; or return them, where that makes no difference.
 
     Parameters
     ----------
     cells : Cells
+        With weights that end.
     reach : {"all", "near"}
+        Whether all cells count at a pixel, or the weights end.
     tileable : bool
-        Whether they are on a torus.
+        Whether the cells are on a torus.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""The cells of a video patchwork in their sources' colours, over space and over time.
+"""Pictures of a video patchwork's cells in the colours of their sources, over space and over time.
 
 References
 ----------
@@ -13,7 +13,7 @@ from .transitions import Transitions
 
 
 def source_colours(places: Double | Ints, sides: tuple[int, int, int]) -> Real:
-    """Colours that say where in the clip: red from left to right, green from top to bottom, blue from first to last.
+    """Colour places of a clip: red from left to right, green from top to bottom, blue from first to last frame.
 
     Parameters
     ----------
@@ -38,13 +38,13 @@ def source_colours(places: Double | Ints, sides: tuple[int, int, int]) -> Real:
 
 
 class FixedCells:
-    """A window of cells that are the same in every frame, and each with a source that changes over time.
+    """Window of cells that are the same in every frame, each with a source that changes over time.
 
     Parameters
     ----------
     cells : Cells
     window : Window
-        Of the output's frames.
+        The part of the output's frames that is painted.
     sources : ndarray of int, shape (count of cells, 2)
         q_i as (y, x).
     transitions : Transitions
@@ -63,7 +63,7 @@ class FixedCells:
             self._sums[part.rows, part.columns, 0] += part.weight
 
     def paint(self, frame: int) -> Real:
-        """Every cell in the colour of its source, mixed by their weights: (rows, columns, 3), 0 to 255."""
+        """Paint every cell of a frame in the colour of its source, mixed by the weights: (rows, columns, 3), 0–255."""
         places = np.column_stack([self._transitions.sources(frame), self._sources])
         colours = source_colours(places, self._sides)
         total = np.zeros((*self._sums.shape[:2], 3), np.float32)

@@ -1,4 +1,4 @@
-"""The straightforward patchwork of a video: time is one more dimension of space.
+"""Video mosaic: a patchwork of a video in which time is one more dimension of space.
 
 Jittered grid points p_i = (t, y, x), one in each block of ``interval`` frames by ``grid`` by ``grid`` pixels, have the
 weights w_i(x) = d(x, p_i)^(−f), where ``interval`` frames count as ``grid`` pixels, and
@@ -26,17 +26,17 @@ from .unbounded_cells import ENDS, Reach
 
 REACH = 1.75  # R; every place has a point within √3 grids
 CENTRE = np.float32(1e-3)  # square pixels, added to squared distances: at a centre nothing else counts
-TILE = 512  # pixels a side of what is made at a time
-HELD = 12  # arrays of its size, in single precision
+TILE = 512  # pixels a side that are computed at a time
+HELD = 12  # arrays of a tile's size that a thread holds, in single precision
 
 
 def least_length(length: int, spacing: int) -> int:
-    """Pixels that a side of the crop, or frames that the clip, must have for patches of this spacing.
+    """Compute the least pixels of a side of the crop, or frames of the clip, for patches of a spacing.
 
     Parameters
     ----------
     length : int
-        Of the output.
+        Pixels or frames of the output.
     spacing : int
         Grid or interval.
 
@@ -49,24 +49,47 @@ def least_length(length: int, spacing: int) -> int:
 
 
 def tile_bytes(height: int, width: int, threads: int = 4) -> int:
-    """Bytes of what so many threads hold of a tile, for frames of this size."""
+    """Compute the bytes that the threads hold of tiles.
+
+    Parameters
+    ----------
+    height, width : int
+        Size of a frame, in pixels.
+    threads : int
+
+    Returns
+    -------
+    int
+    """
     return 4 * HELD * threads * min(height, TILE) * min(width, TILE)
 
 
 def count_mosaic_terms(shape: tuple[int, int, int], grid: int, interval: int) -> int:
-    """How many products of a weight and a pixel a frame has where every point counts."""
+    """Count the products of a weight and a pixel that a frame has where every point counts.
+
+    Parameters
+    ----------
+    shape : tuple of int
+        Frames, height and width of the output.
+    grid, interval : int
+        Spacing of the points in pixels and in frames.
+
+    Returns
+    -------
+    int
+    """
     frames, height, width = shape
     points = -(-frames // interval) * -(-height // grid) * -(-width // grid)
     return points * height * width
 
 
 class VideoMosaic:
-    """A three-dimensional patchwork, of which any frame can be computed.
+    """Three-dimensional patchwork, any frame of which can be computed.
 
     Parameters
     ----------
     planes : ndarray of uint8, shape (T, C, H, W)
-        The clip, each side as long as is `least_length`.
+        The clip, each side at least `least_length`.
     shape : tuple of int
         Frames, height and width of the output.
     grid, interval : int
@@ -115,7 +138,7 @@ class VideoMosaic:
         self.sources: Ints = np.stack([axis.q for axis in (self._times, self._rows, self._columns)], 1)
 
     def frame(self, number: int) -> Real:
-        """Frame ``number`` of the output, (H, W, C), values about those of the clip and sometimes beyond."""
+        """Compute frame ``number`` of the output, (H, W, C); values may lie outside the clip's range."""
         frame = np.empty((self._rows.length, self._columns.length, len(self._mean)), np.float32)
         for top in range(0, len(frame), TILE):
             for left in range(0, frame.shape[1], TILE):
@@ -138,11 +161,12 @@ class VideoMosaic:
         return total
 
     def paint(self, number: int, window: Window, colours: Real) -> Real:
-        """The cells that meet a window of a frame, each in its colour, mixed by their weights.
+        """Paint the cells that meet a window of a frame, each in its colour, mixed by their weights.
 
         Parameters
         ----------
         number : int
+            Of the frame.
         window : Window
         colours : ndarray of float32, shape (cells, 3)
 
@@ -159,7 +183,7 @@ class VideoMosaic:
         return total
 
     def _weights(self, number: int, window: Window) -> Iterator[tuple["_Patch", Real]]:
-        """The patches of a window, with their weights as a part of the largest at each pixel."""
+        """Yield the patches of a window, with their weights as a part of the largest at each pixel."""
         nearest = np.full((window.bottom - window.top, window.right - window.left), np.inf, np.float32)
         for patch in self._patches(number, window):
             place = nearest[patch.place]
@@ -179,7 +203,7 @@ class VideoMosaic:
         return np.exp(ratios, out=ratios)
 
     def _patches(self, number: int, window: Window) -> Iterator["_Patch"]:
-        """What reaches into a window; a patch that reaches over the border is given in parts."""
+        """Yield the patches that reach into a window; one that reaches over the border comes in parts."""
         offsets = self._times.offsets(number)
         for cell in np.flatnonzero(self._times.reaches(offsets)).tolist():
             offset = int(offsets[cell])
@@ -194,7 +218,7 @@ class VideoMosaic:
 
 @dataclass(frozen=True)
 class _Patch:
-    """Where a patch, or a part of it, lies in a window and in the clip, and the squared distances to its point."""
+    """Place of a patch, or of a part of it, in a window and in the clip, and the squared distances to its point."""
 
     cell: int
     place: tuple[slice, slice]
@@ -205,8 +229,8 @@ class _Patch:
 class _Axis:
     """One coordinate of all points: p in the output, q in the clip.
 
-    ``before`` and ``after`` say how many places on either side are seen. If the weights end, all of these lie in the
-    clip around q; otherwise those do that would be seen if they did.
+    ``before`` and ``after`` places on either side are seen. If the weights end, all of these lie in the clip around q;
+    otherwise those do that would be seen if the weights ended.
     """
 
     def __init__(
@@ -223,12 +247,12 @@ class _Axis:
         self._before, self._after = seen[0], seen[1]
 
     def mirrored(self, places: Ints) -> Ints:
-        """Places of the clip, those beyond its ends reflected into it."""
+        """Reflect places beyond the clip's ends into it."""
         turn = places % (2 * self._source)
         return np.minimum(turn, 2 * self._source - 1 - turn)
 
     def offsets(self, place: int) -> Ints:
-        """From every point to a place, the short way where the axis is circular."""
+        """Compute the offsets from every point to a place, the short way where the axis is circular."""
         offsets: Ints = place - self._p
         if self._wraps:
             back = (self.length - 1) // 2
@@ -236,12 +260,12 @@ class _Axis:
         return offsets
 
     def reaches(self, offsets: Ints) -> Mask:
-        """Which points are seen at these offsets from them."""
+        """Tell which points are seen at these offsets from them."""
         seen: Mask = (-self._before <= offsets) & (offsets <= self._after)
         return seen
 
     def parts(self, cell: int, begin: int, end: int) -> Iterator[tuple[slice, slice | Ints, Real]]:
-        """Where a cell is seen between two places: relative to the first, in the clip, and how far from its point."""
+        """Yield where a cell is seen between two places: relative to the first, in the clip, and from its point."""
         p, q, before, after = (int(of_all[cell]) for of_all in (self._p, self.q, self._before, self._after))
         for turn in (-self.length, 0, self.length) if self._wraps else (0,):
             start, stop = max(p - before, begin + turn), min(p + after + 1, end + turn)

@@ -1,4 +1,4 @@
-"""Patchwork of a video whose patches stand still: what stands still in the clip stands still in the output.
+"""Video patchwork with patches that stand still: what stands still in the clip does so in the output.
 
 First stage: every cell has a sequence of its own, made of the clip's frames rearranged in time
 (`microtexture.patchwork.transitions`). Second stage: every frame is a patchwork of the sequences' frames with the same
@@ -25,24 +25,24 @@ from ..parallel import Team
 from .cells import Cells, Window
 from .transitions import Transitions
 
-STRIP = 128  # rows: with slighter strips less is outside of round cells, but the calls take longer than that saves
+STRIP = 128  # rows: lower strips hold less outside of the round cells, but take more calls than that saves
 TINY = 1e-30  # instead of 0, for a cell that has a part of no pixel
 
 
 class PaddedClip:
-    """A video as planes with a mirrored margin, and its average image.
+    """Clip as planes with a mirrored margin, and its average image.
 
     Parameters
     ----------
     video : ndarray of uint8, shape (T, H, W, C)
     margin : int
-        Pixels by which patches reach over its border.
+        Pixels by which patches reach over its border; see `Cells.margin`.
 
     Attributes
     ----------
     planes : ndarray of uint8, shape (T, C, H + 2 margin, W + 2 margin)
     average : ndarray of float32, shape (C, H + 2 margin, W + 2 margin)
-        A(x), the mean of every pixel over time; exact for a video whose frames are all equal, which so stays as it is.
+        A(x), the mean of every pixel over time; exact for a video whose frames are all equal.
     margin : int
     """
 
@@ -60,7 +60,7 @@ class PaddedClip:
 
 @dataclass(frozen=True)
 class _Patch:
-    """Where a cell, or a part of it, lies in a frame and in the clip, and its weights, not yet normalised."""
+    """Place of a cell, or of a part of it, in a frame and in the clip, and its weights, not yet normalised."""
 
     cell: int
     place: tuple[slice, slice]
@@ -69,12 +69,12 @@ class _Patch:
 
 
 class VideoPatchwork:
-    """A video patchwork, of which any frame can be computed.
+    """Video patchwork, any frame of which can be computed.
 
     Parameters
     ----------
     clip : Clip
-        With the margin that ``cells`` ask for with these sources.
+        With the margin of ``cells`` for these sources.
     cells : Cells
     sources : ndarray of int, shape (count of cells, 2)
         q_i in the clip without its margin.
@@ -104,7 +104,7 @@ class VideoPatchwork:
         self._still *= shares - self._norms
 
     def _lay(self, cells: Cells, window: Window, sources: Ints, norms: Real, ratios: Real) -> None:
-        """The patches of a window; ``norms`` gets 1 / √(Σ w_i²), ``ratios`` √(Σ w_i²) / Σ w_i."""
+        """Lay the patches of a window; set ``norms`` to 1 / √(Σ w_i²) and ``ratios`` to √(Σ w_i²) / Σ w_i."""
         parts = cells.parts(window)
         totals, squares = np.zeros((2, *ratios.shape), np.float32)
         for part in parts:
@@ -126,7 +126,7 @@ class VideoPatchwork:
             )
 
     def _local_means(self, count: int, per_weight: Real) -> Real:
-        """Every patch's mean in the average image, each pixel counted by the share that the patch has of it."""
+        """Compute every patch's mean in the average image, each pixel weighted by the patch's share of it."""
         sums = np.zeros((count, len(self._clip.average) + 1))
         for patch in self._patches:
             shares = patch.weight * per_weight[patch.place]
@@ -136,9 +136,9 @@ class VideoPatchwork:
         return means
 
     def frame(self, number: int) -> Real:
-        """Frame ``number`` of the output, (H, W, C), values about those of the clip and sometimes beyond."""
+        """Compute frame ``number`` of the output, (H, W, C); values may lie outside the clip's range."""
         mix = self._transitions.mix(number)
-        made = np.zeros_like(self._still)
+        planes = np.zeros_like(self._still)
         for patch in self._patches:
             source = slice(None), *patch.source
             alpha, beta = mix.alpha[patch.cell], mix.beta[patch.cell]
@@ -147,35 +147,41 @@ class VideoPatchwork:
                 values += self._clip.planes[mix.second[patch.cell]][source] * beta
                 values += self._clip.average[source] * (1 - alpha - beta)
             values *= patch.weight
-            made[:, *patch.place] += values
-        made *= self._norms
-        made += self._still
-        return made.transpose(1, 2, 0)
+            planes[:, *patch.place] += values
+        planes *= self._norms
+        planes += self._still
+        return planes.transpose(1, 2, 0)
 
 
-def frames_in_order(frame: Callable[[int], Real], count: int, threads: int, done: PartDone) -> Iterator[Real]:
-    """Frames 0 … count − 1, of which as many are made, and held, at a time as there are threads.
+def frames_in_order(frame: Callable[[int], Real], count: int, threads: int, report: PartDone) -> Iterator[Real]:
+    """Compute frames 0 … count − 1 and yield them in order; as many are computed, and held, as there are threads.
 
     Parameters
     ----------
     frame : callable
-        Makes the frame of a number.
+        Computes the frame of a number.
     count : int
+        Number of frames.
     threads : int
-    done : callable
-        Called with the part that is done, 0 to 1.
+        The result does not depend on it.
+    report : callable ``(part)``
+        Called with the part that is done, 0–1; what it raises stops the work.
+
+    Yields
+    ------
+    ndarray of float32
     """
-    made: dict[int, Real] = {}
+    finished: dict[int, Real] = {}
 
-    def make(number: int) -> None:
-        made[number] = frame(number)
+    def compute(number: int) -> None:
+        finished[number] = frame(number)
 
-    def report(numbers: range, part: float) -> None:
-        done((numbers.start + part * len(numbers)) / count)
+    def report_of(numbers: range, part: float) -> None:
+        report((numbers.start + part * len(numbers)) / count)
 
     with Team(threads) as team:
         for first in range(0, count, threads):
             numbers = range(first, min(first + threads, count))
-            team.run(make, numbers, partial(report, numbers))
+            team.run(compute, numbers, partial(report_of, numbers))
             for number in numbers:
-                yield made.pop(number)
+                yield finished.pop(number)

@@ -1,4 +1,4 @@
-"""The principal axes of an image's colours: channels that are not correlated, the strongest first."""
+"""Principal axes of an image's colours: channels that are not correlated, the strongest first."""
 
 from dataclasses import dataclass
 
@@ -34,7 +34,7 @@ class ColourSpace:
 
     @classmethod
     def from_planes(cls, planes: Real) -> "ColourSpace":
-        """The principal axes of an image given as planes (C, H, W)."""
+        """Find the principal axes of an image, planes (C, H, W)."""
         mean = planes.mean(axis=(1, 2), dtype=np.float64)
         centred = [plane - np.float32(value) for plane, value in zip(planes, mean, strict=True)]
         # Not a matrix product, whose sum would depend on the number of threads that BLAS takes.
@@ -45,11 +45,11 @@ class ColourSpace:
         return cls(mean, axes * signs, np.maximum(variances[::-1], 0))
 
     def forward(self, planes: Real) -> Real:
-        """Coordinates (C, H, W) along the axes, of mean 0 for the image that the axes are of."""
+        """Turn colours (C, H, W) into coordinates along the axes, of mean 0 for the image whose axes they are."""
         return _combine(self.axes, planes, -self.axes @ self.mean)
 
     def back(self, coordinates: Real) -> Real:
-        """Planes of colours (C, H, W)."""
+        """Turn coordinates (C, H, W) along the axes back into colours."""
         return _combine(self.axes.T, coordinates, self.mean)
 
 

@@ -1,4 +1,4 @@
-"""Heeger and Bergen's pyramid-based synthesis: noise whose pixels and sub-bands take the sample's histograms.
+"""Heeger–Bergen pyramid-based synthesis: noise whose pixels and sub-bands take the sample's histograms.
 
 In the principal axes of the sample's colours, each channel alone: white noise takes the histogram of the sample;
 then, again and again, every band of its steerable pyramid takes the histogram of the sample's band, the pyramid is
@@ -32,12 +32,20 @@ from .pyramid import Band, SteerablePyramid, Total, to_image, to_spectrum
 Edges = Literal["periodic", "mirror"]
 
 FINEST = Band(0, None)
-MOST = 1 << 20  # values of a band that are kept: of a huge crop's, quantiles this dense
+MOST = 1 << 20  # values of a band that are kept; of larger bands as many quantiles
 
 
 @dataclass(frozen=True)
 class Decomposition:
-    """How images are taken apart: scales and orientations of the pyramid, and what becomes of the sample's borders."""
+    """Decomposition of images into sub-bands.
+
+    Parameters
+    ----------
+    scales, orientations : int
+        Of the pyramid, each at least 1.
+    edges : {"periodic", "mirror"}
+        How the sample's borders are made to match: take its periodic component, or put its mirror images beside it.
+    """
 
     scales: int = 4
     orientations: int = 4
@@ -45,7 +53,13 @@ class Decomposition:
 
 
 class ChannelBands:
-    """One channel's sub-bands: a real steerable pyramid of an image, or of it with its mirror images beside it."""
+    """Sub-bands of one channel: a real steerable pyramid of an image, or of it with its mirror images beside it.
+
+    Parameters
+    ----------
+    plane : ndarray of float32, shape (H, W)
+    decomposition : Decomposition
+    """
 
     def __init__(self, plane: Real, decomposition: Decomposition) -> None:
         self._mirror = decomposition.edges == "mirror"
@@ -57,22 +71,23 @@ class ChannelBands:
         self._spectrum = to_spectrum(plane)
 
     def band(self, band: Band) -> Real:
-        """The image's own part of a sub-band."""
+        """Compute a sub-band, of mirror images only the samples whose places lie within the image itself."""
         values = self._pyramid.filter(band).analyse(self._spectrum)
         height, width = values.shape
         return values[: (height + 1) // 2, : (width + 1) // 2] if self._mirror else values
 
 
 class SampleStatistics:
-    """What the synthesis takes from a sample: its colours, and the ordered values of its channels and their bands.
+    """Statistics of a sample: its colours, and the sorted values of its channels and of their bands.
 
     Parameters
     ----------
     h : ndarray of float32, shape (H, W, C)
     decomposition : Decomposition
     pyramid : SteerablePyramid
-        The texture's: no more values are kept of a band than the texture's band has, or than `MOST`.
+        Pyramid of the texture: no more values are kept of a band than the texture's band has, or than `MOST`.
     work : Work
+        Its stage ``"sample"``.
 
     Attributes
     ----------
@@ -89,20 +104,20 @@ class SampleStatistics:
             planes -= smooth_planes(h, work.threads)
         self.space = ColourSpace.from_planes(planes)
         self.channels = self.space.forward(planes)
-        self.pixels = [_ordered(channel, math.prod(pyramid.shape(FINEST))) for channel in self.channels]
+        self.pixels = [_sorted(channel, math.prod(pyramid.shape(FINEST))) for channel in self.channels]
         self.bands: dict[tuple[int, Band], Real] = {}
-        taken_apart = [ChannelBands(channel, decomposition) for channel in self.channels]
+        channel_bands = [ChannelBands(channel, decomposition) for channel in self.channels]
 
         def analyse(item: tuple[int, Band]) -> None:
             work.checkpoint()
             channel, band = item
-            self.bands[item] = _ordered(taken_apart[channel].band(band), min(MOST, math.prod(pyramid.shape(band))))
+            self.bands[item] = _sorted(channel_bands[channel].band(band), min(MOST, math.prod(pyramid.shape(band))))
 
         work.run("sample", analyse, list(product(range(len(planes)), pyramid.bands)))
 
 
 class Synthesis:
-    """A texture on its way: noise with the sample's histogram at first, then iteration by iteration.
+    """Texture in the making: noise with the sample's histogram at first, then iteration by iteration.
 
     Parameters
     ----------
@@ -112,6 +127,7 @@ class Synthesis:
     seed : int
         Not negative.
     work : Work
+        Its stage ``"noise"``.
     """
 
     def __init__(self, sample: SampleStatistics, pyramid: SteerablePyramid, seed: int, work: Work) -> None:
@@ -126,7 +142,7 @@ class Synthesis:
         work.run("noise", begin, range(len(sample.pixels)))
 
     def iterate(self, stage: str) -> None:
-        """Give all bands, and then the pixels, the sample's histograms."""
+        """Match all bands, and then the pixels, to the sample's histograms."""
         totals = [Total(self._pyramid) for _ in self._planes]
 
         def match_band(item: tuple[int, Band]) -> None:
@@ -144,21 +160,28 @@ class Synthesis:
         self._work.run(stage, match_band, list(product(range(len(self._planes)), self._pyramid.bands)))
 
     def restart(self, channel: int, plane: Real) -> None:
-        """Go on from a plane, which is given the sample's pixel histogram first."""
+        """Replace a channel by a plane, matched in place to the sample's pixel histogram."""
         self._work.checkpoint()
         match(plane, self._sample.pixels[channel], self._work.checkpoint)
         self._planes[channel], self._spectra[channel] = plane, to_spectrum(plane)
 
     def channel(self, number: int) -> Real:
-        """A principal component of the texture as it is."""
+        """Return a principal component of the texture as it is now, shape (H, W)."""
         return self._planes[number]
 
     def planes(self, limit: int | None = None) -> Real:
-        """The texture as it is in the sample's colours, shape (C, H, W); of no more than ``limit`` rows and columns."""
+        """Compute the texture as it is now in the sample's colours, (C, H, W), at most ``limit`` rows and columns."""
         return self._sample.space.back(np.stack([plane[:limit, :limit] for plane in self._planes]))
 
     def distances(self, stage: str, channel: int = 0) -> dict[Band, float]:
-        """How far a channel's sub-bands are from the sample's histograms.
+        """Measure how far a channel's sub-bands are from the sample's histograms.
+
+        Parameters
+        ----------
+        stage : str
+            What the progress calls it.
+        channel : int
+            Number of the principal component.
 
         Returns
         -------
@@ -172,15 +195,15 @@ class Synthesis:
             self._work.checkpoint()
             found = np.sort(self._pyramid.filter(band).analyse(self._spectra[channel]), axis=None)
             self._work.checkpoint()
-            asked = quantiles(self._sample.bands[channel, band], len(found))
-            distances[band] = float(np.sqrt(np.square(found - asked).mean())) / (float(asked.std()) or 1)
+            target = quantiles(self._sample.bands[channel, band], len(found))
+            distances[band] = float(np.sqrt(np.square(found - target).mean())) / (float(target.std()) or 1)
 
         self._work.run(stage, measure, self._pyramid.bands)
         return distances
 
 
-def _ordered(values: Real, count: int) -> Real:
-    """Values in order, or ``count`` quantiles of them if there are more."""
+def _sorted(values: Real, count: int) -> Real:
+    """Sort values; of more than ``count`` keep that many quantiles."""
     ordered = np.sort(values, axis=None)
     return quantiles(ordered, count) if count < len(ordered) else ordered
 
@@ -197,7 +220,7 @@ def heeger_bergen(
     threads: int = 1,
     progress: Progress = ignore_progress,
 ) -> Real:
-    """Texture of any size with the pixel and sub-band histograms of an image.
+    """Synthesize a texture of any size with the pixel and sub-band histograms of an image.
 
     Parameters
     ----------
@@ -206,10 +229,11 @@ def heeger_bergen(
     height, width : int, optional
         Size of the texture; default: the sample's.
     seed : int
-        Not negative; of the noise at the start.
+        Not negative; draws the noise at the start.
     decomposition : Decomposition, optional
+        Default: four scales, four orientations, periodic edges.
     iterations : int
-        At least 0, which gives the noise with the sample's pixel histogram.
+        0 or more; 0 returns the noise with the sample's pixel histogram.
     add_smooth : bool
         Add the smooth component back; for a texture of the sample's own size and periodic edges only.
     threads : int
@@ -225,7 +249,7 @@ def heeger_bergen(
     Raises
     ------
     ValueError
-        If values are not finite, or ``add_smooth`` cannot be.
+        If values are not finite, or ``add_smooth`` is true for another size or mirrored edges.
 
     Examples
     --------

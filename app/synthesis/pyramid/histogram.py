@@ -1,4 +1,4 @@
-"""Histogram matching: give an image's values the distribution of others, and keep their order.
+"""Histogram matching: values take another image's distribution and keep their order.
 
 Exact: the value of rank j among n becomes the quantile (j + ½) / n of the target, whose quantiles between its sorted
 values are interpolated where the sizes differ.
@@ -16,16 +16,20 @@ _rooms = threading.local()
 
 
 def quantiles(ordered: Real, count: int, first: int = 0, last: int | None = None) -> Real:
-    """Quantiles (j + ½) / count, j = first … last − 1, of sorted values that stand for (i + ½) / n.
+    """Compute the quantiles (j + ½) / count, j = first … last − 1, of sorted values that stand for (i + ½) / n.
 
     Parameters
     ----------
     ordered : ndarray of float32, shape (n,)
         Ascending.
     count : int
-        Of quantiles in all.
+        Number of quantiles in all.
     first, last : int
-        Those asked for; all by default.
+        First and last-plus-one of those that are computed; default: all.
+
+    Returns
+    -------
+    ndarray of float32, shape (last − first,)
 
     Examples
     --------
@@ -52,7 +56,7 @@ def quantiles(ordered: Real, count: int, first: int = 0, last: int | None = None
 
 
 def match(values: Real, ordered: Real, checkpoint: Checkpoint = lambda: None) -> None:
-    """Give values, in place, the distribution of a target; equal values are told apart by their place.
+    """Match values, in place, to the distribution of a target; of equal values the first one ranks lower.
 
     Floats become whole numbers that sort alike, with their places in the lower half: sorting these whole numbers
     is several times as fast as `numpy.argsort` of floats.
@@ -60,7 +64,7 @@ def match(values: Real, ordered: Real, checkpoint: Checkpoint = lambda: None) ->
     Parameters
     ----------
     values : ndarray of float32, contiguous
-        Fewer than 2³¹ of them.
+        Fewer than 2³¹ values.
     ordered : ndarray of float32, shape (n,)
         The target's values, ascending.
     checkpoint : callable
@@ -92,7 +96,7 @@ def match(values: Real, ordered: Real, checkpoint: Checkpoint = lambda: None) ->
 
 
 def _keys(count: int) -> Ints:
-    """A thread's own room to sort in: fresh memory would cost as much as a third of the sorting."""
+    """Return an array of the calling thread to sort in: fresh memory would cost a third of the sorting."""
     room: Ints | None = getattr(_rooms, "keys", None)
     if room is None or len(room) < count:
         _rooms.keys = room = np.empty(count, np.int64)

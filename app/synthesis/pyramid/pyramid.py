@@ -46,26 +46,26 @@ class Band(NamedTuple):
 
 
 def to_spectrum(image: Real) -> Complex:
-    """Fourier series coefficients of an image (H, W) on the half spectrum (H, W // 2 + 1): its mean at the origin."""
+    """Transform an image (H, W) to Fourier series coefficients (H, W // 2 + 1), with its mean at the origin."""
     spectrum: Complex = scipy.fft.rfft2(image, norm="forward", workers=1)
     return spectrum
 
 
 def to_image(spectrum: Complex, shape: tuple[int, int]) -> Real:
-    """The image (H, W) of `to_spectrum`; the spectrum is spoilt."""
+    """Transform coefficients of `to_spectrum` back to the image (H, W); overwrites them."""
     image: Real = scipy.fft.irfft2(spectrum, s=shape, norm="forward", overwrite_x=True, workers=1)
     return image
 
 
 class Filter:
-    """The window of one band on the part of the half spectrum that the band keeps."""
+    """Window of one band, on the part of the half spectrum that the band keeps."""
 
     def __init__(self, window: Complex, shape: tuple[int, int]) -> None:
         self._window, self._shape = window, shape
         self._top, self._bottom = (shape[0] + 1) // 2, shape[0] // 2  # rows of k₁ ≥ 0, and of k₁ < 0
 
     def analyse(self, spectrum: Complex) -> Real:
-        """The band of an image, from its half spectrum as `to_spectrum` gives it."""
+        """Compute the band of an image from its `to_spectrum`."""
         part = np.empty_like(self._window)
         columns, top = part.shape[1], self._top
         np.multiply(spectrum[:top, :columns], self._window[:top], out=part[:top])
@@ -73,25 +73,25 @@ class Filter:
         return to_image(part, self._shape)
 
     def synthesise(self, values: Real) -> Complex:
-        """What a band contributes to the image's spectrum, cut to the frequencies it keeps."""
+        """Compute a band's part of the image's spectrum, cut to the frequencies that it keeps."""
         part = to_spectrum(values)
         part *= self._window.conj()
         return part
 
     def add(self, part: Complex, total: Complex) -> None:
-        """Add `synthesise`'s result in its place to a half spectrum of the image's size."""
+        """Add a part that `synthesise` returned to a half spectrum of the image's size, in its place."""
         columns, top = part.shape[1], self._top
         total[:top, :columns] += part[:top]
         total[len(total) - self._bottom :, :columns] += part[top:]
 
 
 class SteerablePyramid:
-    """The pyramid of images of one size.
+    """Steerable pyramid of images of one size.
 
     Parameters
     ----------
     height, width : int
-        Of the image, in pixels.
+        Size of the image, in pixels.
     scales, orientations : int
         At least 1. A scale that does not fit (2^scales > height or width) is all zero along that axis.
 
@@ -123,7 +123,7 @@ class SteerablePyramid:
         return -(-self._height // 2**band.scale), -(-self._width // 2**band.scale)
 
     def filter(self, band: Band) -> Filter:
-        """The filter of a band; made anew at each call, which costs less than keeping them all."""
+        """Make the filter of a band, at each call anew: that costs less than keeping them all."""
         shape = self.shape(band)
         y, x = self._axes(band.scale)
         if band.orientation is None:
@@ -157,7 +157,7 @@ class SteerablePyramid:
 
 
 class Total:
-    """A spectrum as the sum of its bands, in one order whichever is done first: sums of floats depend on it."""
+    """Sum of the bands' spectra, always in the order of the pyramid's bands: sums of floats depend on the order."""
 
     def __init__(self, pyramid: SteerablePyramid) -> None:
         self._expected = deque(pyramid.bands)
@@ -166,7 +166,21 @@ class Total:
         self._lock = threading.Lock()
 
     def add(self, band: Band, window: Filter, part: Complex) -> Complex | None:
-        """Take one band's part; the sum, to be kept by the caller, if it was the last one that was missing."""
+        """Add one band's part.
+
+        Parameters
+        ----------
+        band : Band
+        window : Filter
+            The band's.
+        part : ndarray of complex64
+            As `Filter.synthesise` returns it.
+
+        Returns
+        -------
+        ndarray of complex64 or None
+            The sum, which is the caller's, once all bands are there.
+        """
         with self._lock:
             self._waiting[band] = window, part
             while self._expected and self._expected[0] in self._waiting:

@@ -1,4 +1,4 @@
-"""Efros and Leung's non-parametric sampling: a texture that grows from a seed, pixel by pixel, by copying.
+"""Efros–Leung non-parametric sampling: a texture that grows from a few pixels, pixel by pixel, by copying.
 
 The next pixel takes the value of a pixel of the sample, drawn among those whose surroundings look like what is
 already there. The articles compare whole windows of the sample only; here every pixel of it can be drawn, also one near
@@ -26,11 +26,11 @@ from ..parallel import Team
 from .window_search import WindowSearch
 
 SEED_SIDE = 3  # pixels
-PIXELS = 4096  # looked at between two calls of the progress
+PIXELS = 4096  # between two calls of the progress while the order is laid down
 
 
 class Growth(NamedTuple):
-    """A texture with where each pixel comes from, and when it came."""
+    """Texture, the places of the sample that its pixels were copied from, and the order in which they were."""
 
     texture: Real
     copied: Index
@@ -135,10 +135,22 @@ def efros_leung(
 
 
 def growth_order(height: int, width: int, half_patch: int, rng: Generator) -> Index:
-    """Pixels y · width + x in the order in which they are filled, the initial ones first.
+    """List the pixels y · width + x in the order in which they are filled, the initial ones first.
 
     Layer after layer around the initial patch; within a layer those with the most known pixels in their window
     first, as counted when the layer is begun; those with equally many in random order.
+
+    Parameters
+    ----------
+    height, width : int
+        Size of the texture, in pixels.
+    half_patch : int
+        n ≥ 1; the window has 2n + 1 pixels a side.
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    ndarray of int, shape (height · width,)
 
     Examples
     --------
@@ -152,7 +164,7 @@ def growth_order(height: int, width: int, half_patch: int, rng: Generator) -> In
     layer = np.maximum(np.maximum(top - y, y - bottom), np.maximum(left - x, x - right)).clip(0)
 
     def common(at: Index, first: Index, last: Index) -> Index:
-        """Rows or columns that windows around ``at`` have in common with first … last."""
+        """Count the rows or columns that windows around ``at`` have in common with first … last."""
         return np.minimum(at + half_patch, last) - np.maximum(at - half_patch, first) + 1
 
     # What is known when a layer is begun is the rectangle of the layers before.
@@ -168,7 +180,7 @@ def growth_order(height: int, width: int, half_patch: int, rng: Generator) -> In
 def _steps(
     sequence: Index, first: int, height: int, width: int, half_patch: int, progress: Progress
 ) -> Iterator[Index]:
-    """The ranks of the pixels to be grown, from ``first`` on, step by step.
+    """Yield the ranks of the pixels that grow, from ``first`` on, step by step.
 
     A pixel's step comes after those of all earlier pixels in its window. Two pixels of one step are not in each
     other's windows, or one of them would be in a later step: neither sees the other.
@@ -190,7 +202,7 @@ def _steps(
 
 
 def verbatim_share(copied: Index) -> float:
-    """Per cent of the pixels that were copied along with their left or upper neighbour, from the same side of it.
+    """Compute the percentage of pixels copied together with their left or upper neighbour, from the same side of it.
 
     Examples
     --------
@@ -205,15 +217,21 @@ def verbatim_share(copied: Index) -> float:
     return 100 * float(along.mean())
 
 
-def border_share(grown: Growth, height: int, width: int, half_patch: int) -> float:
-    """Per cent of the pixels drawn that came from where the sample holds a part of the window only.
+def border_share(growth: Growth, height: int, width: int, half_patch: int) -> float:
+    """Compute the percentage of drawn pixels that came from where the sample holds a part of the window only.
 
     Parameters
     ----------
-    grown : Grown
+    growth : Growth
     height, width : int
-        Of the sample.
+        Size of the sample, in pixels.
     half_patch : int
+        n of `efros_leung`.
+
+    Returns
+    -------
+    float
+        0–100; 0 if no pixel was drawn.
 
     Examples
     --------
@@ -222,8 +240,8 @@ def border_share(grown: Growth, height: int, width: int, half_patch: int) -> flo
     >>> border_share(Growth(np.zeros((5, 5, 1)), copied, order), 5, 5, half_patch=1)  # but for rows 2 and 3: 6 of 16
     62.5
     """
-    initial = min(SEED_SIDE, grown.order.shape[0]) * min(SEED_SIDE, grown.order.shape[1])
-    drawn = grown.copied[grown.order >= initial]
+    initial = min(SEED_SIDE, growth.order.shape[0]) * min(SEED_SIDE, growth.order.shape[1])
+    drawn = growth.copied[growth.order >= initial]
     if len(drawn) == 0:
         return 0.0
     last = np.array((height, width)) - half_patch - 1

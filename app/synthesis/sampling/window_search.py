@@ -1,4 +1,4 @@
-"""Exact search of an image for the patches that are nearest to a patch known in part.
+"""Window search: exact search of an image for the patches that are nearest to a patch known in part.
 
 Over the known pixels K of a patch p the distance to a patch s of the sample is
 
@@ -31,7 +31,7 @@ UNIT = 2.0**-24  # unit roundoff of single precision
 
 
 def gaussian_window(half_patch: int) -> Double:
-    """Gaussian weights of a square window, of sum 1 and deviation (its side) / 6.4, as Efros and Leung choose it.
+    """Compute the Gaussian weights of a square window, of sum 1 and of Efros and Leung's deviation, its side / 6.4.
 
     Parameters
     ----------
@@ -56,7 +56,7 @@ def gaussian_window(half_patch: int) -> Double:
 
 
 class WindowSearch:
-    """All patches of an image, to be searched again and again.
+    """All patches of an image, laid out to be searched again and again.
 
     There is one around every pixel. Around those near the border it reaches beyond the image, and is compared only
     where what is known lies inside. Patches that are equal are searched once and count as often as they occur.
@@ -70,7 +70,7 @@ class WindowSearch:
     team : Team
         Computes the products; the result does not depend on its threads.
     progress : callable ``(part)``
-        Called while the patches are laid out.
+        Called while the patches are laid out; what it raises stops that.
     """
 
     def __init__(self, h: Real, half_patch: int, team: Team, progress: PartDone) -> None:
@@ -92,7 +92,7 @@ class WindowSearch:
         self._error = 1.01 * UNIT * (self._tiles.shape[1] + 16)
 
     def _tiled(self, rows: Real, progress: PartDone) -> Real:
-        """The distinct patches, (s, s²) with s centred, and (0, `OUTSIDE`), as (tiles, terms, patches in a tile)."""
+        """Lay out the distinct patches, (s, s²) with s centred, or (0, `OUTSIDE`): (tiles, terms, size of a tile)."""
         pixels, channels = len(self._weights), len(self._centre)
         terms = pixels * (channels + 1)
         size = 32 if terms <= 1024 else 16  # of a tile; what was fastest
@@ -108,32 +108,32 @@ class WindowSearch:
         return tiles
 
     def __len__(self) -> int:
-        """Distinct patches, which is what a search costs."""
+        """Number of distinct patches, to which the cost of a search is proportional."""
         return len(self._first)
 
     @property
     def batch(self) -> int:
-        """How many patches are best searched for at a time."""
+        """Number of patches that are best searched for at a time."""
         return max(1, min(DISTANCES // len(self), BATCH // self._tiles.size))
 
     def draw(self, values: Real, known: Mask, tolerance: float, chances: Double) -> Index:
-        """For each of M patches one of the image's patches, uniformly among those within (1 + ε) of the nearest.
+        """Draw for each of M patches one of the image's, uniformly among those within (1 + ε) of the nearest.
 
         Parameters
         ----------
         values : ndarray of float32, shape (M, (2n + 1)², C)
-            Whatever is finite where they are not known.
+            Any finite value where they are not known.
         known : ndarray of bool, shape (M, (2n + 1)²)
-            At least one pixel of each.
+            Which pixels are known, at least one of each patch.
         tolerance : float
             ε ≥ 0.
         chances : ndarray of float64, shape (M,)
-            Uniform on [0, 1[: which of them is taken.
+            Uniform on [0, 1[; decides which of them is drawn.
 
         Returns
         -------
         ndarray of int, shape (M,)
-            y W + x of the pixel in the middle of the patch taken.
+            y W + x of the pixel in the middle of the drawn patch.
         """
         weights = self._weights * known
         centred = values - self._centre
@@ -158,7 +158,7 @@ class WindowSearch:
         return taken
 
     def _product(self, centred: Double, weights: Double) -> Real:
-        """Distances of M patches to all distinct ones, less the patches' own energy, in single precision (M, N)."""
+        """Compute the distances of M patches to all N distinct ones, less their own energy, in single precision."""
         count, pixels, channels = centred.shape
         tiles, terms, size = self._tiles.shape
         parts = -(-count // max(1, PRODUCT // (terms * size)))
@@ -179,7 +179,7 @@ class WindowSearch:
         return result[:count, : len(self)]
 
     def _distances(self, values: Real, weights: Double, rows: Index, found: Index) -> Double:
-        """Distances between patches ``rows`` and the distinct patches ``found``, pair by pair, in double precision."""
+        """Compute the distances of patches ``rows`` and distinct patches ``found``, pair by pair."""
         result = np.empty(len(rows))
         for first in range(0, len(rows), PAIRS):
             pairs = slice(first, first + PAIRS)
