@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from app.images.decode import Limits, decode
 from app.settings import ROOT
 from app.synthesis.parallel import Team, Work
-from app.synthesis.patchwork.cells import Cells, jittered_cells
+from app.synthesis.patchwork.cells import Cells
+from app.synthesis.patchwork.jittered_cells import jittered_cells
 from app.synthesis.patchwork.patchwork import Patchwork
 from app.synthesis.patchwork.transfer import rescale, transfer
 from app.synthesis.patchwork.transitions import Transitions

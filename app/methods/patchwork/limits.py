@@ -11,7 +11,8 @@ from app.methods.model import Size
 from app.methods.params import ADVANCED, Resolved
 from app.synthesis.patchwork.cell_match import HALF
 from app.synthesis.patchwork.cell_shapes import reach as near_reach
-from app.synthesis.patchwork.cells import LEFT_OUT, SLACK
+from app.synthesis.patchwork.cells import LEFT_OUT
+from app.synthesis.patchwork.jittered_cells import SLACK
 from app.synthesis.patchwork.unbounded_cells import ENDS, Reach, count_terms, span, table_bytes
 
 LEAST_GRID = 4

@@ -28,7 +28,8 @@ from app.methods.patchwork.limits import (
 from app.methods.patchwork.pictures import cell_colours
 from app.synthesis.arrays import Real
 from app.synthesis.parallel import Team, Work, row_blocks
-from app.synthesis.patchwork.cells import Cells, jittered_cells, least_sample
+from app.synthesis.patchwork.cells import Cells
+from app.synthesis.patchwork.jittered_cells import jittered_cells, least_sample
 from app.synthesis.patchwork.patchwork import BAND, TILE, Patchwork, band_rows, paint_cells
 from app.synthesis.patchwork.unbounded_cells import Reach, cells_with_reach
 from app.synthesis.sinks import Levels

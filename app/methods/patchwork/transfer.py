@@ -28,7 +28,7 @@ from app.methods.patchwork.limits import (
 )
 from app.methods.patchwork.pictures import cell_colours, compared_pattern, match_facts
 from app.synthesis.parallel import Team, Work, row_blocks
-from app.synthesis.patchwork.cells import jittered_cells, least_sample
+from app.synthesis.patchwork.jittered_cells import jittered_cells, least_sample
 from app.synthesis.patchwork.patchwork import paint_cells
 from app.synthesis.patchwork.transfer import rescale, transfer
 from app.synthesis.patchwork.unbounded_cells import Reach, cells_with_reach

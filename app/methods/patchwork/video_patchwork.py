@@ -37,7 +37,8 @@ from app.methods.patchwork.pictures import (
     textured,
 )
 from app.synthesis.arrays import Real
-from app.synthesis.patchwork.cells import jittered_cells, least_sample, random_numbers
+from app.synthesis.patchwork.cells import random_numbers
+from app.synthesis.patchwork.jittered_cells import jittered_cells, least_sample
 from app.synthesis.patchwork.transitions import Transitions, longest_interval
 from app.synthesis.patchwork.unbounded_cells import Reach, cells_with_reach, count_terms
 from app.synthesis.patchwork.video_cells import FixedCells, source_colours

@@ -43,7 +43,8 @@ from app.synthesis.arrays import Real
 from app.synthesis.luminance import luminance
 from app.synthesis.parallel import Team, Work
 from app.synthesis.patchwork.cell_match import match_cells
-from app.synthesis.patchwork.cells import Cells, jittered_cells, least_sample, random_numbers
+from app.synthesis.patchwork.cells import Cells, random_numbers
+from app.synthesis.patchwork.jittered_cells import jittered_cells, least_sample
 from app.synthesis.patchwork.transfer import rescale
 from app.synthesis.patchwork.transitions import Transitions, longest_interval
 from app.synthesis.patchwork.unbounded_cells import Reach, cells_with_reach, count_terms

@@ -28,7 +28,7 @@ def match_cells(
     Parameters
     ----------
     texture : ndarray of float32, shape (H', W', C)
-        At least `microtexture.patchwork.cells.least_sample` pixels a side.
+        At least `microtexture.patchwork.jittered_cells.least_sample` pixels a side.
     pattern : ndarray of float32, shape (H, W, C)
         Of the size of the cells' plane; values in the texture's unit.
     cells : Cells

@@ -18,7 +18,8 @@ import numpy as np
 from ..arrays import Checkpoint, Ints, Progress, Real, ignore_progress
 from ..parallel import Team, Work, row_blocks
 from ..sinks import array_sink
-from .cells import Cells, Part, Window, jittered_cells
+from .cells import Cells, Part, Window
+from .jittered_cells import jittered_cells
 from .unbounded_cells import Reach, cells_with_reach
 
 BAND, TILE = 192, 1024  # rows and columns that are joined at once: with smaller ones calls take longer than sums
@@ -183,7 +184,7 @@ def patchwork(
     Parameters
     ----------
     h : ndarray of float32, shape (H, W, C)
-        The sample, at least `microtexture.patchwork.cells.least_sample` pixels each way.
+        The sample, at least `microtexture.patchwork.jittered_cells.least_sample` pixels each way.
     height, width : int
         Size of the texture, in pixels.
     grid : int

@@ -96,7 +96,7 @@ def transfer(
     Parameters
     ----------
     texture : ndarray of float32, shape (H', W', C)
-        At least `microtexture.patchwork.cells.least_sample` pixels a side; values of [0, ``peak``].
+        At least `microtexture.patchwork.jittered_cells.least_sample` pixels a side; values of [0, ``peak``].
     pattern : ndarray of float32, shape (H, W, C)
         Of the size of the cells' plane; values in the texture's unit.
     cells : Cells

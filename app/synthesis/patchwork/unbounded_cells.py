@@ -157,7 +157,7 @@ def cells_with_reach(cells: Cells, reach: Reach, *, tileable: bool) -> Cells:
 
     Examples
     --------
-    >>> from microtexture.patchwork.cells import jittered_cells
+    >>> from microtexture.patchwork.jittered_cells import jittered_cells
     >>> cells = jittered_cells(60, 60, grid=10, sharpness=2, tileable=True, seed=1)
     >>> len(cells_with_reach(cells, "all", tileable=True).parts(Window(0, 1, 0, 1)))  # each once
     36

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from app.synthesis.patchwork.cell_shapes import REACH
-from app.synthesis.patchwork.cells import jittered_cells
+from app.synthesis.patchwork.jittered_cells import jittered_cells
 from app.synthesis.patchwork.patchwork import Patchwork, paint_cells, patchwork
 from tests.synthesis.full_sums import mirrored
 from tests.synthesis.images import image

@@ -5,7 +5,7 @@ import pytest
 
 from app.synthesis.parallel import Team, Work
 from app.synthesis.patchwork.cell_match import match_cells
-from app.synthesis.patchwork.cells import jittered_cells, least_sample
+from app.synthesis.patchwork.jittered_cells import jittered_cells, least_sample
 from app.synthesis.patchwork.transfer import rescale, transfer
 from tests.synthesis.images import image
 from tests.synthesis.stopping import stops_at

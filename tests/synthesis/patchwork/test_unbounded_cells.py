@@ -5,7 +5,7 @@ import pytest
 from scipy import ndimage
 
 from app.synthesis.parallel import Team, Work
-from app.synthesis.patchwork.cells import jittered_cells
+from app.synthesis.patchwork.jittered_cells import jittered_cells
 from app.synthesis.patchwork.patchwork import Patchwork, paint_cells, patchwork
 from app.synthesis.patchwork.transfer import transfer
 from app.synthesis.patchwork.transitions import Transitions

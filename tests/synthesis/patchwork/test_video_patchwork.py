@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from app.synthesis.parallel import Team, Work
-from app.synthesis.patchwork.cells import Window, jittered_cells
+from app.synthesis.patchwork.cells import Window
+from app.synthesis.patchwork.jittered_cells import jittered_cells
 from app.synthesis.patchwork.patchwork import Patchwork
 from app.synthesis.patchwork.transfer import transfer
 from app.synthesis.patchwork.transitions import Transitions
