@@ -11,8 +11,8 @@ import engine_jobs
 import pytest
 
 from app.executor.dask import DaskExecutor
-from app.executor.inline import InlineExecutor
 from app.settings import Settings
+from tests.executor.inline import InlineExecutor
 
 SECONDS = 30.0  # none of what is waited for takes as long
 

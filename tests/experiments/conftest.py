@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.executor.inline import InlineExecutor
 from app.experiments.model import Sample
 from app.experiments.service import Service
 from app.images.png_writer import encode_png
@@ -15,6 +14,7 @@ from app.settings import Settings
 from app.store.blobs import FileBlobs
 from app.store.sql import SqlStore
 from app.worker import run_job
+from tests.executor.inline import InlineExecutor
 
 OPERATOR = "the operator's own token"
 

@@ -1,6 +1,7 @@
 """Content-addressed files."""
 
 import hashlib
+import os
 import threading
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -66,8 +67,56 @@ def test_leases_are_shared(blobs: FileBlobs) -> None:
         blobs.put(b"texture")
 
 
-def test_only_stale_temporary_files_are_removed(blobs: FileBlobs) -> None:
+@pytest.mark.parametrize(("age", "goes"), [(-1, False), (0, False), (1, True)], ids=["younger", "as old", "older"])
+def test_a_temporary_file_is_removed_if_it_is_older(blobs: FileBlobs, age: int, goes: bool) -> None:
+    moment = datetime(2026, 3, 1, tzinfo=UTC)
+    path = blobs.temporary(b"half")
+    os.utime(path, (moment.timestamp() - age,) * 2)
+    assert blobs.remove_temporary(moment) == goes
+    assert path.exists() is not goes
+
+
+def test_temporary_files_that_somebody_else_removes_meanwhile_keep_no_other_from_going(
+    blobs: FileBlobs, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    paths = [blobs.temporary(b"half") for _ in range(3)]
+    unlink = Path.unlink
+
+    def raced(path: Path, missing_ok: bool = False) -> None:
+        unlink(path)
+        unlink(path, missing_ok=missing_ok)
+
+    monkeypatch.setattr(Path, "unlink", raced)
+    assert blobs.remove_temporary(datetime.now(UTC) + timedelta(minutes=1)) == 3
+    assert not any(path.exists() for path in paths)
+
+
+def test_what_is_put_is_on_the_disk_before_it_has_its_name(blobs: FileBlobs, monkeypatch: pytest.MonkeyPatch) -> None:
+    """First the content, then the name: a power cut leaves no name without its content."""
+    events: list[str] = []
+    sync, replace = os.fsync, Path.replace
+    monkeypatch.setattr(os, "fsync", lambda descriptor: events.append("sync") or sync(descriptor))
+    monkeypatch.setattr(Path, "replace", lambda path, target: events.append("name") or replace(path, target))
+    blobs.put(b"texture")
+    assert events == ["sync", "sync", "name", "sync"]  # as it is written, as it is moved in, and its directory
+
+
+def test_a_lock_is_let_go_even_if_what_holds_it_fails(blobs: FileBlobs) -> None:
+    with pytest.raises(ZeroDivisionError), blobs.lease():
+        raise ZeroDivisionError
+    with pytest.raises(ZeroDivisionError):
+        blobs.remove_unused(["0" * 64], lambda candidates: 1 / 0)  # type: ignore[arg-type,return-value]
+    digest = blobs.put(b"texture")
+    assert blobs.remove_unused([digest], lambda candidates: set()) == {digest}
+
+
+def test_a_file_that_is_gone_already_is_not_counted(blobs: FileBlobs) -> None:
+    digest = blobs.put(b"texture")
+    assert blobs.remove_unused([digest, "0" * 64], lambda candidates: set()) == {digest}
+    assert blobs.remove_unused([digest], lambda candidates: set()) == set()
+
+
+def test_only_files_under_their_digest_count_as_kept(blobs: FileBlobs) -> None:
+    digest = blobs.put(b"texture")
     blobs.temporary(b"half")
-    now = datetime.now(UTC)
-    assert blobs.remove_temporary(now - timedelta(minutes=1)) == 0
-    assert blobs.remove_temporary(now + timedelta(minutes=1)) == 1
+    assert blobs.digests() == [digest]

@@ -17,7 +17,6 @@ import uvicorn
 from fastapi import FastAPI
 from PIL import Image
 
-from app.executor.inline import InlineExecutor
 from app.experiments.service import Service
 from app.gallery.exhibits import exhibits
 from app.main import create_app
@@ -26,6 +25,7 @@ from app.settings import ROOT, Settings
 from app.store.blobs import FileBlobs
 from app.store.sql import SqlStore
 from app.worker import run_job
+from tests.executor.inline import InlineExecutor
 
 OPERATOR = "operator-token-of-the-tests"
 PATIENCE = 20.0

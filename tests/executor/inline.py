@@ -1,4 +1,4 @@
-"""The engine in a thread of this process: for tests, and wherever one experiment at a time is enough."""
+"""Inline engine, for tests: runs jobs one at a time in a thread of this process; its contract is the Dask engine's."""
 
 import logging
 import threading
