@@ -51,7 +51,7 @@ test-without-browser: programs
 	$(BIN)/pytest -m 'chaos and not (acceptance or load)' tests
 
 test-fast: $(VENV)/.ready-dev
-	$(BIN)/pytest -q -n 2 --dist loadfile --hypothesis-profile=quick -m 'not (slow or acceptance or chaos or load)'
+	$(BIN)/pytest -q -n 2 --dist loadfile --hypothesis-profile=quick --testmon --testmon-forceselect -m 'not (slow or acceptance or chaos or load)'
 
 lint: lint-python types lint-templates lint-js ## only what reads the code: ruff, mypy, j2lint and the lint of the scripts
 
@@ -96,7 +96,7 @@ LOCK_OPTIONS = --quiet --no-config --universal --python-version 3.11 --generate-
 	--no-emit-index-url --custom-compile-command "make lock"
 
 clean: ## remove the environment and caches, not ./data
-	rm -rf $(VENV) .venv-3.13 node_modules build dist *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis .schemathesis
+	rm -rf $(VENV) .venv-3.13 node_modules build dist *.egg-info .pytest_cache .ruff_cache .mypy_cache .hypothesis .schemathesis .testmondata*
 
 $(BIN)/python:
 	@scripts/check-python "$(PYTHON)"

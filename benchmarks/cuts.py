@@ -83,7 +83,10 @@ def smoothed_root(p: Complex, cut: int, reach: float) -> Real:
 def whitened(p: Complex, make: Callable[[Complex], Real]) -> Real:
     """The same for colours of covariance 1, and back."""
     values, axes = np.linalg.eigh(covariance(p[..., None])[0, 0])
-    return np.einsum("ab,yxbj->yxaj", (axes * np.sqrt(values)) @ axes.T, make(p @ (axes / np.sqrt(values)) @ axes.T))
+    made: Real = np.einsum(
+        "ab,yxbj->yxaj", (axes * np.sqrt(values)) @ axes.T, make(p @ (axes / np.sqrt(values)) @ axes.T)
+    )
+    return made
 
 
 def covariance(spectrum: Complex) -> Real:
@@ -96,7 +99,8 @@ def set_right(kernel: Real, wanted: Real) -> Real:
     values, axes = np.linalg.eigh(covariance(without_mean(kernel))[0, 0])
     half, back = (axes * np.sqrt(values)) @ axes.T, (axes / np.sqrt(values)) @ axes.T
     values, axes = np.linalg.eigh(half @ wanted @ half)
-    return np.einsum("ab,yxbj->yxaj", back @ (axes * np.sqrt(np.clip(values, 0, None))) @ axes.T @ back, kernel)
+    made: Real = np.einsum("ab,yxbj->yxaj", back @ (axes * np.sqrt(np.clip(values, 0, None))) @ axes.T @ back, kernel)
+    return made
 
 
 def without_mean(kernel: Real) -> Complex:

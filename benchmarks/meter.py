@@ -43,7 +43,7 @@ class Photograph:
 
 def spectrum(grey: Real) -> NDArray[np.complex128]:
     p = periodic_component(grey).astype(np.float64)
-    return scipy.fft.fft2(p - p.mean())
+    return np.asarray(scipy.fft.fft2(p - p.mean()))
 
 
 def frequencies() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -53,7 +53,7 @@ def frequencies() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 
 def lack(filtered: NDArray[np.float64]) -> float:
     """What δ is for the two differences, for one filter: 1 − ‖·‖₁ over its mean for a Gaussian texture."""
-    return 1 - np.sqrt(np.pi / 2) * np.abs(filtered).mean() / np.sqrt(np.square(filtered).mean())
+    return float(1 - np.sqrt(np.pi / 2) * np.abs(filtered).mean() / np.sqrt(np.square(filtered).mean()))
 
 
 def along(grey: Real, sigma: float) -> list[float]:
@@ -68,7 +68,7 @@ def band(grey: Real, sigma: float) -> NDArray[np.float64]:
     """Difference of Gaussians of deviation σ and 2σ."""
     x, y = frequencies()
     square = sigma**2 * (x**2 + y**2)
-    return scipy.fft.ifft2(spectrum(grey) * (np.exp(-square / 2) - np.exp(-2 * square))).real
+    return np.asarray(scipy.fft.ifft2(spectrum(grey) * (np.exp(-square / 2) - np.exp(-2 * square))).real)
 
 
 def unevenness(grey: Real, sigma: float) -> float:
@@ -151,7 +151,7 @@ def chosen_inside(tables: dict[str, NDArray[np.float64]]) -> float:
         for column in range(stacked.shape[2]):
             others = np.delete(np.delete(stacked, row, 1), column, 2)
             total += stacked[others.mean((1, 2)).argmax(), row, column]
-    return total / stacked[0].size
+    return float(total / stacked[0].size)
 
 
 def cut(low: list[NDArray[np.float64]], high: list[NDArray[np.float64]]) -> float:

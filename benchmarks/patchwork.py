@@ -74,7 +74,8 @@ def pictures(name: str, frames: int, context: Context) -> Iterator[Picture]:
     """What a video method makes of the clip; the pattern is a still of noise."""
     entry = method(name)
     sources = [clip(), Source(sample(320), 255)][: len(entry.inputs)]
-    return entry.pictures(sources, entry.params(width=320, height=320, frames=frames), context)
+    params = entry.params.model_validate({"width": 320, "height": 320, "frames": frames})
+    return entry.pictures(sources, params, context)
 
 
 def film(name: str, frames: int) -> Callable[[], None]:

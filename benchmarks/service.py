@@ -46,7 +46,8 @@ def directly(photo: Path, seed: int, threads: int) -> int:
     rpn = method("rpn")
     source = Source(read_crop(photo, CROP), 255)
     context = Context(8, threads, lambda stage, fraction: None)
-    return sum(len(picture.data) for picture in rpn.pictures([source], rpn.params(seed=seed), context))
+    made = rpn.pictures([source], rpn.params(seed=seed), context)
+    return sum(len(picture.data) for picture in made if isinstance(picture.data, bytes))
 
 
 def kernel(photo: Path, seed: int, threads: int) -> None:

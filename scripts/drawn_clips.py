@@ -112,7 +112,8 @@ def advected_noise() -> Iterator[Real]:
         """Pixels a frame, down and across: what rises, and waves that run across their own direction."""
         long = np.maximum(np.hypot(down, across), np.pi / SIDE)
         parts = [speed * np.exp(1j * turn * frame) * each / long for each in (across, -down)]
-        return np.stack([_waves(down, across, part, at) for part in parts]) - np.array([1.6, 0])[:, None, None]
+        rise = np.array([1.6, 0])[:, None, None]
+        return np.asarray(np.stack([_waves(down, across, part, at) for part in parts]) - rise)
 
     layers: dict[int, tuple[Real, Real]] = {}  # a noise, and how far each place's has come
     for frame in range(-LIFE, FRAMES):
@@ -127,7 +128,8 @@ def advected_noise() -> Iterator[Real]:
             shift = np.stack([map_coordinates(each, grid - step, order=1, mode="grid-wrap") for each in shift]) - step
             layers[layer] = noise, shift
             if frame >= 0:
-                seen += np.sin(np.pi * (age + 0.5) / LIFE) * _look(noise, *(grid + shift), mode="grid-wrap")
+                y, x = grid + shift
+                seen += np.sin(np.pi * (age + 0.5) / LIFE) * _look(noise, y, x, mode="grid-wrap")
         if frame >= 0:
             glow, haze = np.sqrt(2 / LAYERS) * np.moveaxis(seen, 2, 0)
             yield np.stack([150 + 44 * glow + 8 * haze, 92 + 34 * glow - 2 * haze, 62 + 17 * glow - 12 * haze], axis=2)
@@ -149,7 +151,7 @@ CLIPS = {clip.__name__: clip for clip in (sand_under_water, leaves_under_water, 
 def _waves(down: Real, across: Real, amplitude: NDArray[np.complex128], at: Real) -> Real:
     """Real part of a sum of plane waves, of these radians a pixel, at the rows and the columns ``at``."""
     columns = np.exp(1j * np.outer(across, at))
-    return ((amplitude * np.exp(1j * np.outer(at, down))) @ columns).real
+    return np.asarray(((amplitude * np.exp(1j * np.outer(at, down))) @ columns).real)
 
 
 def _photograph(name: str) -> Real:

@@ -47,7 +47,7 @@ DRAWN = {"two_sinusoids": two_sinusoids, "lit_plaster": lit_plaster, "rolled_pai
 
 
 def _standard(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    return values / values.std()
+    return np.asarray(values / values.std())
 
 
 def _levels(values: NDArray[np.float64]) -> Pixels:

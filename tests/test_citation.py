@@ -23,7 +23,7 @@ def citation() -> dict[str, Any]:
 
 def test_the_citation_has_the_form_of_its_standard() -> None:
     """By the schema of the Citation File Format, version 1.2.0, which the validator brings along."""
-    command = [sys.executable, "-m", "check_jsonschema", "--builtin-schema", "vendor.citation-file-format", FILE]
+    command = [sys.executable, "-m", "check_jsonschema", "--builtin-schema", "vendor.citation-file-format", str(FILE)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
 

@@ -66,7 +66,8 @@ def test_every_decision_stands_in_the_index_with_its_title_and_date() -> None:
         text = path.read_text(encoding="utf-8")
         title = re.match(rf"# {number}\. (.+)\n", text)
         date = re.search(r"^Date: (.+)$", text, re.MULTILINE)
-        assert title and date, path.name
+        assert title, path.name
+        assert date, path.name
         expected.append((str(number), path.name, title[1], date[1]))
     assert rows == expected
 

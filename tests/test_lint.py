@@ -92,7 +92,7 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[str]]:
     for number, text in enumerate(PLANTED + RIGHT):
         (scripts / f"{number}.js").write_text(BEGIN + text + "\n")
     node = Path(sys.executable).parent / "node"
-    command = [node, ROOT / "node_modules" / "eslint" / "bin" / "eslint.js", "--format", "json", "static/js"]
+    command = [str(node), str(ROOT / "node_modules" / "eslint" / "bin" / "eslint.js"), "--format", "json", "static/js"]
     output = subprocess.run(command, cwd=root, capture_output=True, text=True, timeout=300, check=False)
     assert output.returncode == 1, output.stderr
     files = {Path(entry["filePath"]).stem: entry["messages"] for entry in json.loads(output.stdout)}

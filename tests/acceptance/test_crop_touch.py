@@ -141,7 +141,7 @@ def test_two_fingers_zoom_about_their_middle(visitors: Any, screenshot: Callable
         before = sight_of(page)
         a, b = before.at(x - 30, y - 60), before.at(x + 30, y + 60)
         middle = before.at(x, y)
-        out = [tuple(m + spread * (p - m) for p, m in zip(point, middle, strict=True)) for point in (a, b)]
+        out = [(u + spread * (p - u), v + spread * (q - v)) for (p, q), (u, v) in ((a, middle), (b, middle))]
         fingers.pinch([a, b], out)
         after = sight_of(page)
         assert after.scale / before.scale == pytest.approx(spread, rel=0.03)

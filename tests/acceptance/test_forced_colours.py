@@ -47,7 +47,7 @@ def pixels(element: Locator, margin: int = 6) -> np.ndarray:
     box = element.bounding_box()
     assert box is not None
     left, top = max(0, box["x"] - margin), max(0, box["y"] - margin)
-    clip = {"x": left, "y": top, "width": box["width"] + 2 * margin, "height": box["height"] + 2 * margin}
+    clip: Any = {"x": left, "y": top, "width": box["width"] + 2 * margin, "height": box["height"] + 2 * margin}
     return np.asarray(Image.open(BytesIO(element.page.screenshot(clip=clip))).convert("L")).astype(int)
 
 

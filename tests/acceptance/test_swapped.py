@@ -76,11 +76,11 @@ def assert_views(page: Page) -> None:
             assert_pictures(page)
     page.get_by_role("link", name="Side by side").click()
     page.get_by_role("button", name="Fit").click()
-    before = page.locator(".scale").inner_text()
+    scale = page.locator(".scale").inner_text()
     page.get_by_role("button", name="Zoom in").click()
-    expect(page.locator(".scale")).not_to_have_text(before)
+    expect(page.locator(".scale")).not_to_have_text(scale)
     page.get_by_role("button", name="Fit").click()
-    expect(page.locator(".scale")).to_have_text(before)
+    expect(page.locator(".scale")).to_have_text(scale)
 
 
 def assert_plays(page: Page, frames: np.ndarray, shown_pixels: Shown, until: Callable[..., Any]) -> None:

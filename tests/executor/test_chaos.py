@@ -8,6 +8,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import psutil
 import pytest
@@ -143,7 +144,7 @@ def test_closing_leaves_no_worker_behind(tmp_path: Path) -> None:
 @contextmanager
 def remote_cluster(port: int) -> Iterator[Callable[[], None]]:
     """A scheduler and one worker as an operator starts them; gives what kills the scheduler at once."""
-    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    quiet: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     environment = os.environ | {
         "PYTHONPATH": os.pathsep.join([str(Path(__file__).parent), str(Path(__file__).parents[2])])
     }
@@ -157,8 +158,9 @@ def remote_cluster(port: int) -> Iterator[Callable[[], None]]:
         yield scheduler.kill
     finally:
         for process in (worker, scheduler):
-            for child in (
+            children: list[Any] = (
                 [process, *psutil.Process(process.pid).children(recursive=True)] if process.poll() is None else []
-            ):
+            )
+            for child in children:
                 child.kill()
             process.wait()

@@ -57,7 +57,7 @@ def photograph(tmp_path: Path) -> Path:
 @pytest.fixture
 def upload(photograph: Path, tmp_path: Path) -> Path:
     """A copy that a test may give away."""
-    return shutil.copy(photograph, tmp_path / "upload")
+    return Path(shutil.copy(photograph, tmp_path / "upload"))
 
 
 @pytest.fixture

@@ -8,6 +8,7 @@ import threading
 from collections.abc import Callable
 from datetime import timedelta
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -166,6 +167,7 @@ class Busy:
 
 def test_nothing_is_begun_while_somebody_waits(filled: Service) -> None:
     """It asks again and again: here until the fifth time it is told that somebody waits."""
+    engine: Any
     engine, asked = Busy(), []
 
     class Closing(threading.Event):
@@ -197,7 +199,7 @@ def test_the_command_says_what_it_makes(tmp_path: Path, samples: Path) -> None:
         "MICROTEXTURE_SAMPLES_DIR": str(samples),
         "MICROTEXTURE_WORKERS": "2",
     }
-    command = [Path(sys.executable).parent / "microtexture", "catalogue"]
+    command = [str(Path(sys.executable).parent / "microtexture"), "catalogue"]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
     here = [exhibit for exhibit in exhibits().values() if set(dict(exhibit.inputs)) <= set(DRAWN)]
     assert done.stdout == f"Made {len(here)} figures, 0 failed, 0 were there already.\n"

@@ -35,7 +35,8 @@ def test_a_photograph_becomes_a_texture(service: Service, sample: Sample) -> Non
         path = service.outputs.get(experiment.id, output.name)[1]
         assert path.stat().st_size == output.bytes
         if output.listed:
-            assert Image.open(path).size == (output.width, output.height)
+            with Image.open(path) as image:
+                assert image.size == (output.width, output.height)
     texture = service.outputs.get(experiment.id, "texture")[0]
     assert (texture.width, texture.height) == (70, 36)
     assert "texture" in experiment.timings
@@ -68,10 +69,13 @@ def test_thumbnails_are_hidden_and_a_preview_is_made_when_asked_for(service: Ser
     for name in (".thumbnail-crop", ".thumbnail-texture"):
         output, path = service.outputs.get(experiment.id, name)
         assert not output.listed
-        assert max(Image.open(path).size) <= 320
-        assert Image.open(path).size == (output.width, output.height)
+        with Image.open(path) as image:
+            assert max(image.size) <= 320
+        with Image.open(path) as image:
+            assert image.size == (output.width, output.height)
     output, path = service.outputs.get(experiment.id, ".preview")
-    assert Image.open(path).size == (output.width, output.height) == (1200, 630)
+    with Image.open(path) as image:
+        assert image.size == (output.width, output.height) == (1200, 630)
 
 
 @pytest.mark.parametrize(

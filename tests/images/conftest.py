@@ -4,6 +4,7 @@ import struct
 import zlib
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,7 +20,7 @@ Picture = NDArray[np.unsignedinteger]
 def read(tmp_path: Path) -> Callable[..., Decoded]:
     """Decode bytes that come in a file with a meaningless name."""
 
-    def run(data: bytes, **limits: float) -> Decoded:
+    def run(data: bytes, **limits: Any) -> Decoded:
         path = tmp_path / "upload.tmp"
         path.write_bytes(data)
         return decode(path, Limits(**limits))
@@ -29,7 +30,7 @@ def read(tmp_path: Path) -> Callable[..., Decoded]:
 
 @pytest.fixture(scope="session")
 def noise() -> Callable[..., Picture]:
-    def make(*shape: int, dtype: type = np.uint8, seed: int = 0) -> Picture:
+    def make(*shape: int, dtype: Any = np.uint8, seed: int = 0) -> Any:
         return np.random.default_rng(seed).integers(0, np.iinfo(dtype).max, shape, dtype=dtype, endpoint=True)
 
     return make

@@ -130,7 +130,7 @@ def test_frames_that_change_their_size_are_refused(read: Read) -> None:
                     track = target.add_stream_from_template(source.streams.video[0])
                 for packet in source.demux(video=0):
                     if packet.dts is not None:
-                        packet.pts += part * 120
+                        packet.pts = (packet.pts or 0) + part * 120
                         packet.dts += part * 120
                         packet.stream = track
                         target.mux(packet)

@@ -16,8 +16,9 @@ from app.images.video.writers import write_video
 from tests.images.clips import BT601, BT709, FULL, LIMITED, Film, lossless, moving, psnr, video
 
 Read = Callable[..., Decoded]
-COLOURS = np.uint8(
-    [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255], [0, 0, 0], [128, 128, 128], [200, 120, 40], [30, 90, 220]]
+COLOURS = np.array(
+    [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255], [0, 0, 0], [128, 128, 128], [200, 120, 40], [30, 90, 220]],
+    np.uint8,
 )
 
 

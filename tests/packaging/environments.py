@@ -62,7 +62,7 @@ def environment(directory: Path, wheel: Path, seen: Iterable[str]) -> Environmen
 
 def build(project: Path, target: str, directory: Path) -> Path:
     """Build a distribution, ``"wheel"`` or ``"sdist"``, of the project in a directory."""
-    command = [sys.executable, "-m", "hatchling", "build", "--target", target, "--directory", directory]
+    command = [sys.executable, "-m", "hatchling", "build", "--target", target, "--directory", str(directory)]
     subprocess.run(command, cwd=project, check=True, capture_output=True)
     (built,) = directory.iterdir()
     return built

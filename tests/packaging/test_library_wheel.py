@@ -70,7 +70,7 @@ def library(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Environmen
     seen = directory / "numpy and scipy"
     seen.mkdir()
     for package in (np, sys.modules["scipy"]):
-        packages = Path(package.__file__).parents[1]
+        packages = Path(str(package.__file__)).parents[1]
         for path in packages.glob(f"{package.__name__}*"):  # the package, its libraries, its metadata
             (seen / path.name).symlink_to(path)
     return environment(directory, wheel, [str(seen)])

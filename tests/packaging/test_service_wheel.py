@@ -63,7 +63,7 @@ def site(service: Environment) -> Iterator[httpx.Client]:
     with socket.create_server(("127.0.0.1", 0)) as reserved:
         port = reserved.getsockname()[1]
     log = service.work / "server.log"
-    command = [service.programs / "microtexture", "serve", "--port", str(port)]
+    command = [str(service.programs / "microtexture"), "serve", "--port", str(port)]
     variables = service.variables | {"MICROTEXTURE_WORKERS": "1", "MICROTEXTURE_CATALOGUE": "false"}
     with log.open("w") as output:
         process = subprocess.Popen(command, cwd=service.work, env=variables, stdout=output, stderr=output)

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from datetime import UTC, datetime
 from itertools import count
+from typing import Any
 
 from app.experiments.model import Experiment, ExperimentInput, Output, Sample
 from app.images.crop import Rectangle
@@ -14,13 +15,13 @@ MEASURED = {"structure": {"inputs": [0.01], "outputs": [-0.002]}, "facts": [{"na
 COMPUTED = {"version": "1", "cpu": "a processor (X86_V3)", "numpy": "2", "scipy": "1"}
 
 
-def a_sample(**values: object) -> Sample:
+def a_sample(**values: Any) -> Sample:
     number = next(NUMBERS)
     sample = Sample(640, 427, 3, 8, False, id=f"sample{number}", digest=f"{number:064x}", created_at=START)
     return replace(sample, **values)
 
 
-def an_experiment(sample: Sample, **values: object) -> Experiment:
+def an_experiment(sample: Sample, **values: Any) -> Experiment:
     number = next(NUMBERS)
     inputs = (ExperimentInput(sample.id, Rectangle(1, 2, 30, 40)),)
     parameters = {"width": 64, "height": 32, "seed": 2**53 - 1, "alpha": 0.1, "window": "bump", "σ": None}
@@ -28,11 +29,11 @@ def an_experiment(sample: Sample, **values: object) -> Experiment:
     return replace(experiment, **values)
 
 
-def an_output(name: str = "texture", **values: object) -> Output:
+def an_output(name: str = "texture", **values: Any) -> Output:
     return replace(Output(name, "Texture", 64, 32, bytes=5 << 30, digest=f"{next(NUMBERS):064x}"), **values)
 
 
-def succeeded(store: SqlStore, sample: Sample, **values: object) -> Experiment:
+def succeeded(store: SqlStore, sample: Sample, **values: Any) -> Experiment:
     experiment = an_experiment(sample, **values)
     store.add(experiment)
     store.start(experiment.id)

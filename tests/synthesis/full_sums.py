@@ -1,6 +1,7 @@
 """Equations (1), (2) and (7) of the report as they stand, in double precision: every cell at every pixel."""
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -46,7 +47,7 @@ def patch(picture, source, down, across):
     return picture[np.ix_(rows, columns)].astype(np.float64)
 
 
-def patchwork_sum(h, cells, sources, tileable, mean=None):
+def patchwork_sum(h: Any, cells: Any, sources: Any, tileable: bool, mean: Any = None) -> Any:
     """Equation (2)."""
     mean = h.mean((0, 1), np.float64) if mean is None else mean
     total, squares = np.zeros((cells.height, cells.width, h.shape[2])), np.zeros((cells.height, cells.width))
@@ -56,7 +57,7 @@ def patchwork_sum(h, cells, sources, tileable, mean=None):
     return total / np.sqrt(squares)[:, :, None] + mean
 
 
-def transfer_sum(texture, cells, sources):
+def transfer_sum(texture: Any, cells: Any, sources: Any) -> Any:
     """Equation (7), the averages by the shares w_i / Σ w; and the blended averages."""
     every = list(cells_at(cells, tileable=False))
     weights = sum(weight for *_, weight in every)

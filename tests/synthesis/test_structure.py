@@ -108,7 +108,9 @@ def test_every_number_is_that_of_the_formula_summed_pixel_by_pixel(size, sigma):
 def test_a_random_phase_texture_lies_at_nothing_whatever_it_was_made_from(name):
     """δ of a crop's random phase textures has a deviation of 0.003 at most here: 0.01 is three of them."""
     h = photograph(name)
-    assert max(abs(measure_delta(rpn(h, seed=seed))) for seed in range(4)) < 0.01
+    deltas = [measure_delta(rpn(h, seed=seed)) for seed in range(4)]
+    assert None not in deltas
+    assert max(abs(delta) for delta in deltas if delta is not None) < 0.01
 
 
 @pytest.mark.parametrize(
@@ -163,7 +165,7 @@ def test_of_less_than_32_pixels_along_a_side_there_is_no_telling(size, known):
 
 def test_a_crop_without_contrast_at_the_scale_has_no_structure_there():
     """A fine checkerboard, smoothed by far more than its squares, would leave rounding to be measured."""
-    assert structure_index(np.tile(np.float32([[0, 255], [255, 0]]), (16, 16)), 40) == NOTHING
+    assert structure_index(np.tile(np.array([[0, 255], [255, 0]], np.float32), (16, 16)), 40) == NOTHING
 
 
 @pytest.mark.parametrize("size", [(1, 1), (1, 2), (2, 2), (3, 1), (5, 4)])

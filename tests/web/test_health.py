@@ -1,10 +1,12 @@
 """``/healthz``, ``/readyz`` and ``/metrics``."""
 
 import threading
+from typing import cast
 
 import httpx
 from prometheus_client.parser import text_string_to_metric_families
 
+from app.experiments.service import Service
 from app.main import create_app
 
 
@@ -27,7 +29,7 @@ def test_alive_long_before_ready(site, serving, until):
         def close(self) -> None:
             assert self.ready
 
-    with serving(create_app(site.settings, Slow())) as url:
+    with serving(create_app(site.settings, cast(Service, Slow()))) as url:
         assert httpx.get(f"{url}/healthz").status_code == 200
         response = httpx.get(f"{url}/readyz")
         assert (response.status_code, response.headers["Retry-After"]) == (503, "1")
@@ -45,7 +47,7 @@ def test_an_engine_that_does_not_start_is_logged_and_leaves_the_web_up(site, ser
 
         def close(self) -> None: ...
 
-    with serving(create_app(site.settings, Broken())) as url:
+    with serving(create_app(site.settings, cast(Service, Broken()))) as url:
         until(lambda: "The engine did not start" in caplog.text)
         assert "nowhere" in caplog.text
         assert [httpx.get(f"{url}{path}").status_code for path in ("/healthz", "/readyz")] == [200, 503]

@@ -2,11 +2,13 @@
 
 import asyncio
 import logging
+from typing import cast
 
 import httpx
 import pytest
 
 from app import errors
+from app.experiments.service import Service
 from app.main import create_app
 from app.web.problems import STATUS, title
 
@@ -164,7 +166,7 @@ def test_an_unexpected_error_tells_nothing_and_is_logged(site, caplog):
         def bundled(self):
             raise RuntimeError("the password is swordfish")
 
-    transport = httpx.ASGITransport(create_app(site.settings, Broken()), raise_app_exceptions=False)
+    transport = httpx.ASGITransport(create_app(site.settings, cast(Service, Broken())), raise_app_exceptions=False)
 
     async def ask():
         async with httpx.AsyncClient(transport=transport, base_url="http://test") as client:

@@ -20,8 +20,9 @@ class Chromium(Window):
     def __init__(
         self, browser: Browser, url: str, directory: Path, width: int, height: int, phone: bool = False
     ) -> None:
-        shape = {"viewport": {"width": width, "height": height}, "has_touch": phone, "is_mobile": phone}
-        self.context = browser.new_context(base_url=url, **shape)
+        self.context = browser.new_context(
+            base_url=url, viewport={"width": width, "height": height}, has_touch=phone, is_mobile=phone
+        )
         self.context.set_default_timeout(PATIENCE * 1000)
         self.directory = directory
         self.noted: list[str] = []

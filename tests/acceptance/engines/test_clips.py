@@ -102,6 +102,6 @@ def assert_result(window: Window, films: dict[str, np.ndarray]) -> None:
         assert int(count) == COUNT
         if step:
             assert (int(number) - int(before.split(" / ")[0]) - step) % COUNT == 0
-        for selector, film in zip((CROP, TEXTURE), films.values(), strict=True):
-            window.shows(selector, film[int(number) - 1], NOISE)
-            assert difference(window.decoded(selector), film[int(number) - 1]) < NOISE
+        for selector, frames in zip((CROP, TEXTURE), films.values(), strict=True):
+            window.shows(selector, frames[int(number) - 1], NOISE)
+            assert difference(window.decoded(selector), frames[int(number) - 1]) < NOISE

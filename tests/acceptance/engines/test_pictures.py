@@ -57,7 +57,7 @@ def cut(window: Window, original: np.ndarray) -> list[int]:
     upper = slice(8, seen.shape[0] // 2)  # without handles and readout
     kept = Image.fromarray(original[y : y + height, x : x + width]).resize(seen.shape[1::-1], Image.Resampling.BOX)
     both = [coarse(picture[upper, 8:-8]) for picture in (seen, np.asarray(kept))]
-    assert np.corrcoef(*both)[0, 1] > 0.8
+    assert np.corrcoef(both[0], both[1])[0, 1] > 0.8
     return [x, y, width, height]
 
 

@@ -45,7 +45,8 @@ def test_outputs_come_in_every_format_and_are_kept(service: Service, sample: Sam
     experiment = finished(service, a_request(sample))
     path, media_type = asyncio.run(service.outputs.convert(experiment.id, "texture", file_format))
     assert media_type == f"image/{file_format}"
-    assert Image.open(path).format == file_format.upper()
+    with Image.open(path) as image:
+        assert image.format == file_format.upper()
     assert asyncio.run(service.outputs.convert(experiment.id, "texture", file_format)) == (path, media_type)
 
 
@@ -64,6 +65,7 @@ def test_the_full_rendition_is_the_stored_file_and_small_ones_are_bounded(servic
     assert np.array_equal(imagecodecs.png_decode(full.read_bytes()), pixels)
     small, media_type = service.renditions.image(sample, 200)
     assert media_type == "image/jpeg"
-    assert Image.open(small).size == (256, 128)
+    with Image.open(small) as image:
+        assert image.size == (256, 128)
     shutil.rmtree(small.parent)
     assert service.renditions.image(sample, 200)[0].exists()

@@ -3,6 +3,7 @@
 import threading
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -38,7 +39,7 @@ class FakeWriter:
 FRAME = np.zeros((4, 4, 3), np.uint8)
 
 
-def encode(writers: list[FakeWriter], frames: int, progress: Callable[[float], None] = lambda part: None) -> None:
+def encode(writers: list[Any], frames: int, progress: Callable[[float], None] = lambda part: None) -> None:
     with Encoding(writers) as encoding:
         for _ in range(frames):
             encoding.write(FRAME)
@@ -67,7 +68,7 @@ def test_every_writer_gets_every_frame(tmp_path):
 
 def test_few_frames_wait_for_an_encoder(tmp_path):
     """So memory is bounded: whoever makes frames faster than they are encoded waits."""
-    slow = FakeWriter(tmp_path / "slow")
+    slow: Any = FakeWriter(tmp_path / "slow")
     with Encoding([slow]) as encoding:
         for _ in range(WAITING + 1):
             encoding.write(FRAME)

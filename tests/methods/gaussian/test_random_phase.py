@@ -1,6 +1,7 @@
 """RPN and ADSN as the registry declares them: parameters, refusals, pictures."""
 
 import io
+from typing import Any
 
 import numpy as np
 import pytest
@@ -110,7 +111,7 @@ def test_it_gives_every_step_as_a_picture(name, channels, height, width):
 
 def test_the_pictures_are_made_one_by_one_the_texture_first():
     entry, stages = method("rpn"), []
-    run = entry.pictures([crop()], entry.params(), Context(8, 1, lambda stage, fraction: stages.append(stage)))
+    run: Any = entry.pictures([crop()], entry.params(), Context(8, 1, lambda stage, fraction: stages.append(stage)))
     assert stages == []
     assert next(run).name == "texture"
     assert "output-spectrum" not in stages

@@ -3,6 +3,7 @@
 import threading
 import weakref
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -51,6 +52,7 @@ def test_a_texture_is_a_film_for_every_use_and_a_cube(tmp_path, channels):
     assert (np.stack(list(read_video(made["texture"].data))) == film).all()
     decoded = np.stack(list(read_video(made["texture-mp4"].data)))[:, :61, :83]
     assert psnr(decoded, np.broadcast_to(film, decoded.shape)) >= 38
+    preview: Any
     with Image.open(made["preview"].data) as preview:
         assert (preview.size, preview.n_frames) == ((83, 61), 12)
     cube = png_decode(made["cube"].data)

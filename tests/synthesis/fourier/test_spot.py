@@ -91,6 +91,6 @@ def test_the_same_size_changes_nothing():
 
 
 def test_the_centre_is_at_most_as_large_as_asked_for():
-    h = np.arange(70).reshape(7, 10)
+    h = np.arange(70, dtype=np.float32).reshape(7, 10)
     assert centre(h, 3, 99).tolist() == h[2:5].tolist()
     assert centre(h, 7, 4).tolist() == h[:, 3:7].tolist()

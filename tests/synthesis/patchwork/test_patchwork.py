@@ -95,11 +95,11 @@ def test_mean_and_deviation_are_the_samples_in_the_joins_as_everywhere(sharpness
     everywhere = {blend: np.array(found) for blend, found in values.items()}
     joins = {blend: found[np.array(inside)] for blend, found in everywhere.items()}
     sigma, mean = h.std(), h.mean()
-    for found in (joins["deviation"], everywhere["deviation"]):
-        n = min(found.size, 180**2)
+    for kept in (joins["deviation"], everywhere["deviation"]):
+        n = min(kept.size, 180**2)
         assert n > 5_000
-        assert abs(found.mean() - mean) < 4 * sigma / np.sqrt(n)
-        assert abs(found.std() - sigma) < 4 * sigma * np.sqrt(2 / (4 * n))
+        assert abs(kept.mean() - mean) < 4 * sigma / np.sqrt(n)
+        assert abs(kept.std() - sigma) < 4 * sigma * np.sqrt(2 / (4 * n))
     assert abs(everywhere["sharp"].std() - sigma) < 4 * sigma * np.sqrt(2 / (4 * 180**2))
     assert joins["feather"].std() < 0.8 * sigma, "feathering is dull, so what the joins keep is the divisor's doing"
 

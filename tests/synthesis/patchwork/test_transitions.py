@@ -84,9 +84,9 @@ def test_mean_and_deviation_are_the_clips_in_every_frame_also_amid_transitions(l
         assert abs(made.mean()) < 0.02
         assert made.std() == pytest.approx(1, abs=0.04)
         amid.append(made[mix.beta > 0.6])
-    amid = np.concatenate(amid)
-    assert len(amid) > 100
-    assert amid.std() == pytest.approx(1, abs=0.05)
+    values = np.concatenate(amid)
+    assert len(values) > 100
+    assert values.std() == pytest.approx(1, abs=0.05)
     np.testing.assert_allclose(mix.alpha**2 + mix.beta**2, 1, rtol=1e-6)
 
 

@@ -12,7 +12,7 @@ def decoded(content):
     """Frames (T, H, W, 3) of a file, and how many are shown a second."""
     with av.open(BytesIO(content)) as file:
         frames = np.stack([frame.to_ndarray(format="rgb24") for frame in file.decode(video=0)])
-        return frames, float(file.streams.video[0].average_rate)
+        return frames, float(file.streams.video[0].average_rate or 0)
 
 
 def test_an_uploaded_clip_is_a_sample_of_several_frames(site, clip):

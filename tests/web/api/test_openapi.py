@@ -109,7 +109,7 @@ def test_no_request_makes_a_route_break_its_word(site, operator, tmp_path):
     Only that everything the schemas allow is taken is not asked for: no schema says what a photograph is, which ids
     there are, or what a crop's bounds are.
     """
-    command = [Path(sys.executable).with_name("schemathesis"), "run", f"{site.url}{URL}"]
+    command = [str(Path(sys.executable).with_name("schemathesis")), "run", f"{site.url}{URL}"]
     options = {
         "--header": f"Authorization: {operator['Authorization']}",
         "--exclude-checks": "positive_data_acceptance",

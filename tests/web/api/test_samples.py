@@ -4,12 +4,14 @@ import threading
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from io import BytesIO
+from typing import cast
 
 import httpx
 import pytest
 from PIL import Image
 
 from app.errors import BusyError
+from app.experiments.service import Service
 from app.main import create_app
 
 MANY = 50  # more than the 40 threads that Starlette answers with
@@ -113,7 +115,7 @@ def test_uploads_that_are_decoded_hold_nobody_up(site, serving, picture, until):
 
     service, data = Decoding(), picture()
     with (
-        serving(create_app(site.settings, service)) as url,
+        serving(create_app(site.settings, cast(Service, service))) as url,
         httpx.Client(timeout=PATIENCE, limits=httpx.Limits(max_connections=None), verify=False) as client,
         ThreadPoolExecutor(MANY) as pool,
     ):

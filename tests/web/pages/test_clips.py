@@ -4,7 +4,7 @@ import html
 import re
 from collections.abc import Callable
 from datetime import UTC, datetime
-from typing import Any
+from typing import Any, cast
 from urllib.parse import parse_qsl, urlsplit
 
 import numpy as np
@@ -189,7 +189,9 @@ def test_an_experiment_s_form_asks_for_it_again(method: str, choices: Choices) -
     experiment = Experiment(
         id="e",
         method=method,
-        inputs=tuple(ExperimentInput(entry.sample, entry.crop, entry.frames) for entry in inputs),
+        inputs=tuple(
+            ExperimentInput(entry.sample, cast(Rectangle, entry.crop), cast(Frames, entry.frames)) for entry in inputs
+        ),
         parameters=params.model_dump(mode="json"),
         listed=True,
         owner="",

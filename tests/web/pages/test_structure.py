@@ -1,6 +1,7 @@
 """The structure index of a crop by the API, and the page that explains it."""
 
 import itertools
+from typing import Any
 
 import numpy as np
 import pytest
@@ -94,14 +95,15 @@ def test_the_number_as_it_is_shown_has_one_word(limit):
 
 @pytest.mark.parametrize(("delta", "word", "width"), [(-0.02, "micro-texture", "0.0"), (0.1, "structured", "50.0")])
 def test_a_picture_s_meter_is_a_bar_a_number_and_a_word(delta, word, width):
-    macro = TEMPLATES.env.get_template("_partials/meter.html").module.meter
-    said = macro(delta)
+    module: Any = TEMPLATES.env.get_template("_partials/meter.html").module
+    said = module.meter(delta)
     assert f'class="meter-value" width="{width}"' in said
     assert f"{max(delta, 0):.2f}</span> {word}" in said
 
 
 def test_a_picture_of_a_few_pixels_has_words_and_no_number():
-    said = TEMPLATES.env.get_template("_partials/meter.html").module.meter(None)
+    module: Any = TEMPLATES.env.get_template("_partials/meter.html").module
+    said = module.meter(None)
     assert "too small to tell" in said
     assert "<svg" not in said
     assert "meter-number" not in said
