@@ -33,7 +33,7 @@ def whole(text: str) -> int:
 def plain(text: str, *, whole: bool) -> str:
     """Write a number that a person typed as programs do: a decimal comma becomes a point.
 
-    The pages' scripts read numbers in the same way (``static/js/numbers.js``).
+    The pages' scripts read numbers in the same way (``static/js/lib/numbers.js``).
 
     Raises
     ------

@@ -88,7 +88,7 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> dict[str, list[str]]:
     (root / "node_modules").symlink_to(ROOT / "node_modules")
     scripts = root / "static" / "js"
     scripts.mkdir(parents=True)
-    shutil.copy(ROOT / "static" / "js" / "start.js", scripts)
+    shutil.copy(ROOT / "static" / "js" / "lib" / "start.js", scripts)
     for number, text in enumerate(PLANTED + RIGHT):
         (scripts / f"{number}.js").write_text(BEGIN + text + "\n")
     node = Path(sys.executable).parent / "node"

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from app.numbers import plain
 
 NODE = Path(sys.executable).parent / "node"
-SCRIPT = Path(__file__).parents[1] / "static" / "js" / "numbers.js"
+SCRIPT = Path(__file__).parents[1] / "static" / "js" / "lib" / "numbers.js"
 TEXTS = [
     "", " ", "0", "00", "-0", "7", "+7", "-7", "−7", "007", "7.0", "7,00", "7.000", "7,000", "7,0000", "7.", "7,",
     ".5", ",5", "-,5", "0,2", "12,5", "12.5", "1.234,5", "1,234.5", "1,2,3", "1..2", "1 000", "1_000", "1e3", "1E-3",

@@ -37,7 +37,7 @@ def owner_token(request: Request) -> str | None:
 
 
 def pressed(said: str) -> str | None:
-    """Read the key that `static/js/press.js` puts into a form; what is none counts as not said."""
+    """Read the key that `static/js/pages/press.js` puts into a form; what is none counts as not said."""
     return said if _PRESS.fullmatch(said) else None
 
 

@@ -344,10 +344,10 @@ def test_a_video_that_was_quicker_than_the_script_lies_under_its_crop_all_the_sa
     def hold(route: Route) -> None:
         held.append(route)
 
-    page.route("**/js/clip.js", hold)
+    page.route("**/js/crop/range_playback.js", hold)
     page.goto(uploaded, wait_until="commit")
     page.wait_for_function("() => document.querySelector('#frame video')?.readyState > 0")
-    page.unroute("**/js/clip.js", hold)
+    page.unroute("**/js/crop/range_playback.js", hold)
     for route in held:
         route.fallback()
     expect(page.locator("#frame.ready")).to_be_visible()

@@ -103,4 +103,4 @@ def test_pages_say_which_forms_start_experiments(site: Any, path: str) -> None:
     starting = page.count('action="/experiments"') + page.count('/again"')
     assert starting > 0
     assert page.count("data-press") == starting
-    assert "/static/js/press.js" in page
+    assert "/static/js/pages/press.js" in page

@@ -6,8 +6,10 @@ import pytest
 
 RECORD = {"method": "rpn", "inputs": [{"sample": "gravel_gray"}]}
 
+PATHS = ["/", "/docs", "/api/v1/methods", "/api/v1/nothing", "/nothing", "/static/js/pages/docs.js"]
 
-@pytest.mark.parametrize("path", ["/", "/docs", "/api/v1/methods", "/api/v1/nothing", "/nothing", "/static/js/docs.js"])
+
+@pytest.mark.parametrize("path", PATHS)
 def test_every_answer_has_the_strict_headers(site, path):
     headers = site.client.get(path).headers
     policy = dict(part.split(" ", 1) for part in headers["Content-Security-Policy"].split("; "))

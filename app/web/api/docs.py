@@ -28,7 +28,7 @@ _PAGE = f"""<!doctype html>
 <noscript><p>This page needs JavaScript; the document itself is <a href="{OPENAPI_URL}">openapi.json</a>.</p></noscript>
 <main id="swagger-ui" data-document="{OPENAPI_URL}"></main>
 <script src="{SWAGGER_URL}/swagger-ui-bundle.js"></script>
-<script src="/static/js/docs.js"></script>
+<script src="/static/js/pages/docs.js"></script>
 </body>
 </html>
 """

@@ -1,9 +1,9 @@
 // An experiment's page: what it needs is set up when it opens, and again when a finished run has replaced its waiting room.
 
-import { offerCopies } from "./copy.js";
-import { Player } from "./player.js";
-import { follow } from "./progress.js";
-import { Viewer } from "./viewer.js";
+import { offerCopies } from "../lib/copy.js";
+import { Player } from "../viewer/player.js";
+import { follow } from "../lib/progress.js";
+import { Viewer } from "../viewer/viewer.js";
 
 const PAUSES = [500, 1000, 2000, 4000, 8000]; // milliseconds before the page is asked for again
 const PATIENCE = 15_000; // milliseconds that an answer may take

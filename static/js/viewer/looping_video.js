@@ -1,8 +1,8 @@
-// A film: a <video> that counts in frames, and goes on counting when it has looped.
+// A video that counts in frames, and goes on counting when it has looped.
 
 const modulo = (value, count) => ((value % count) + count) % count;
 
-export class Film {
+export class LoopingVideo {
   constructor(video) {
     this.video = video;
     this.count = Number(video.dataset.frames);

@@ -1,7 +1,7 @@
 // Fields for numbers: the arrow keys step them, and when a field is left it says the number as it was understood. What is
 // no number stays as it was typed, for the form says at the field what is wrong with it.
 
-import { isWhole, numberIn, plain } from "./numbers.js";
+import { isWhole, numberIn, plain } from "../lib/numbers.js";
 
 const STEPS = { ArrowUp: 1, ArrowDown: -1, PageUp: 10, PageDown: -10 };
 const SELECTOR = "input[inputmode=numeric], input[inputmode=decimal]";

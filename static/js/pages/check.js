@@ -3,8 +3,8 @@
 // itself has said of the form stays until what it is about has changed and is found mended; what no check can find, such as a
 // full queue, until the form is sent again.
 
-import { ask } from "./answers.js";
-import { start } from "./start.js";
+import { ask } from "../lib/answers.js";
+import { start } from "../lib/start.js";
 
 const PAUSE = 300; // milliseconds without a change
 const PATIENCE = 20_000; // milliseconds for an answer

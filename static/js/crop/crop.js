@@ -1,11 +1,11 @@
 // The crop on a photograph or a clip: the box shows what the four number fields say, and dragging writes to them. Every change
 // is told to the form as a "crop" event, and can be taken back.
 
-import { Box } from "./crop_box.js";
-import { Gestures } from "./crop_gestures.js";
-import { Steps } from "./crop_history.js";
-import { Zoom } from "./crop_zoom.js";
-import { NumberGroup } from "./number_group.js";
+import { Box } from "./box.js";
+import { Gestures } from "./gestures.js";
+import { Steps } from "./history.js";
+import { Zoom } from "./zoom.js";
+import { NumberGroup } from "../lib/number_group.js";
 import { fitted, moved, resized, same, spanned } from "./rectangle.js";
 
 export const SIDES = ["x", "y", "width", "height"];

@@ -1,8 +1,8 @@
 // The time range of a clip. The two numeric fields are the truth: the reel shows them, and dragging its ends writes to them
 // and shows their frames. Of a clip, a still method takes the one frame at the first end. Changes are "crop" events.
 
-import { Clip, REDUCED } from "./clip.js";
-import { NumberGroup } from "./number_group.js";
+import { RangePlayback, REDUCED } from "./range_playback.js";
+import { NumberGroup } from "../lib/number_group.js";
 
 const KEYS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10, Home: -Infinity, End: Infinity };
 const PARTS = { range: "Time range", first: "First frame", last: "Last frame" };
@@ -43,7 +43,7 @@ export class TimeRange {
     });
     this.plays = !REDUCED.matches;
     this.drag = null;
-    /** @type {Clip | undefined} */
+    /** @type {RangePlayback | undefined} */
     this.clip = undefined;
     this.build();
     this.listen();
@@ -109,7 +109,7 @@ export class TimeRange {
   /** Take what the fields, the method and the sample say. */
   follow() {
     const video = this.root.querySelector("video");
-    if (this.clip?.video !== video) this.clip = video && new Clip(video, this.rate, (frame) => this.point(frame));
+    if (this.clip?.video !== video) this.clip = video && new RangePlayback(video, this.rate, (frame) => this.point(frame));
     if (!video) return;
     const empty = this.fields.first.value === "" && this.fields.count.value === "";
     this.take(this.fitted(this.read() ?? this.shown ?? { first: 0, count: this.total }));

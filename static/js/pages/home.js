@@ -1,6 +1,6 @@
 // Home: a photograph or a clip can also be dropped anywhere on the page or pasted, and is sent as soon as it is chosen.
 
-import { read } from "./answers.js";
+import { read } from "../lib/answers.js";
 
 const form = document.querySelector("#upload");
 const input = form.querySelector("#file");

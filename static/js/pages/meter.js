@@ -2,8 +2,8 @@
 // the newest crop. Its sentence is announced, its number is not, so that dragging does not chatter. What could not be asked is
 // not known: no verdict stands beside a crop that it is not about.
 
-import { ask } from "./answers.js";
-import { start } from "./start.js";
+import { ask } from "../lib/answers.js";
+import { start } from "../lib/start.js";
 
 const PATIENCE = 20_000; // milliseconds for one answer
 const [SOON, LATE] = [2_000, 60_000]; // milliseconds until a question that failed is asked again: from, doubling, up to

@@ -1,6 +1,6 @@
 // Films in step: one clock, in frames, for all of them. Each loops by itself; those ahead wait for the slowest.
 
-import { Film } from "./film.js";
+import { LoopingVideo } from "./looping_video.js";
 
 const [AHEAD, FAR] = [0.5, 2]; // frames
 const SLOWED = 0.8; // speed of a film that is a little ahead
@@ -13,7 +13,7 @@ export class Player {
     this.bar = root.querySelector(".player");
     this.scrubber = this.bar.querySelector("input");
     this.panes = root.querySelector(".panes");
-    this.films = [...root.querySelectorAll("video")].map((video) => new Film(video));
+    this.films = [...root.querySelectorAll("video")].map((video) => new LoopingVideo(video));
     this.clock = this.films.at(-1);
     this.wanted = false;
     this.seen = true;

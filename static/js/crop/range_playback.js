@@ -1,9 +1,10 @@
-// Plays a range of a clip's frames over and over, and shows single ones. Frame k is on the screen from k / rate seconds on.
+// The range of a clip’s frames that plays over and over, beside its crop, and single frames of it. Frame k is on the screen from
+// k / rate seconds on.
 
 export const REDUCED = window.matchMedia("(prefers-reduced-motion: reduce)");
 
 /** `told` is called with the number of the frame that is on the screen, whenever it changes. */
-export class Clip {
+export class RangePlayback {
   constructor(video, rate, told) {
     Object.assign(this, { video, rate, told });
     this.range = { first: 0, count: Infinity };

@@ -1,7 +1,7 @@
 // The viewer: the same pictures side by side, one upon the other (flip, slider), or tiled, always at the same scale and place.
 
 import { divide } from "./dividers.js";
-import { listen, listenToKeys } from "./gestures.js";
+import { listen, listenToKeys } from "./pan_zoom.js";
 import { fitting, picture, place } from "./stage.js";
 
 const [SMALLEST, LARGEST] = [0.25, 16];

@@ -1,9 +1,9 @@
 // The inputs of a sample's page: editors of each one's crop and time range, and for further ones what is chosen or uploaded.
 
-import { ask } from "./answers.js";
-import { Crop } from "./crop.js";
-import { start } from "./start.js";
-import { TimeRange } from "./time_range.js";
+import { ask } from "../lib/answers.js";
+import { Crop } from "../crop/crop.js";
+import { start } from "../lib/start.js";
+import { TimeRange } from "../crop/time_range.js";
 
 const SMALL = 256; // pixels of a thumbnail's longer side, as on the home page
 const record = (sample) => `/api/v1/samples/${encodeURIComponent(sample)}`;

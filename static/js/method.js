@@ -1,5 +1,0 @@
-// A method page.
-
-import { offerCopies } from "./copy.js";
-
-offerCopies(document);

@@ -1,0 +1,5 @@
+// A method page.
+
+import { offerCopies } from "../lib/copy.js";
+
+offerCopies(document);
