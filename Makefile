@@ -29,9 +29,11 @@ dev: setup ## the same, started again when a module of app/ changes; templates a
 check: $(VENV)/.ready-dev node_modules/.ready ## before every commit: lint, types and the fast tests, in half a minute
 	@$(MAKE) --no-print-directory --jobs=3 --output-sync=target --keep-going test-fast types lint-js lint-python lint-templates test-js
 
-fix: $(VENV)/.ready-dev node_modules/.ready ## mend what ruff can mend, and format
+fix: $(VENV)/.ready-dev node_modules/.ready ## mend what ruff and eslint can mend, and format
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
+	$(BIN)/node node_modules/eslint/bin/eslint.js --fix static/js tests/js
+	$(BIN)/node node_modules/prettier/bin/prettier.cjs --write --log-level warn $(SCRIPTS)
 
 # What kills processes has the machine to itself.
 test: $(if $T,$(VENV)/.ready-dev,lint test-js programs) ## all that CI runs, or T=tests/web/test_press.py, a directory or one test
@@ -66,10 +68,15 @@ types: $(VENV)/.ready-dev
 lint-templates: $(VENV)/.ready-dev
 	$(BIN)/python -m j2lint templates --extensions html --rules_dir lint/templates --ignore S3 S6 S7
 
+SCRIPTS = static/js tests/js lint/promises.js eslint.config.js tsconfig.json package.json
 lint-js: node_modules/.ready
-	$(BIN)/node node_modules/eslint/bin/eslint.js static/js
+	$(BIN)/node node_modules/eslint/bin/eslint.js static/js tests/js
+	$(BIN)/node node_modules/prettier/bin/prettier.cjs --check --log-level warn $(SCRIPTS)
+	$(BIN)/node node_modules/typescript/bin/tsc
+	$(BIN)/node node_modules/typescript/bin/tsc --project tests/js
 
 test-js: node_modules/.ready
+	$(BIN)/node --test --test-reporter=dot 'tests/js/*.test.js'
 
 chaos: programs ## only the tests that kill processes
 	$(BIN)/pytest -m chaos

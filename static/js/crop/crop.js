@@ -1,95 +1,92 @@
-// The crop on a photograph or a clip: the box shows what the four number fields say, and dragging writes to them. Every change
-// is told to the form as a "crop" event, and can be taken back.
+// The crop on a photograph or a clip: the box shows what the four number fields say, and dragging writes to them. Every
+// change is told to the form as a "crop" event, and can be taken back.
 
-import { Box } from "./box.js";
-import { Gestures } from "./gestures.js";
-import { Steps } from "./history.js";
-import { Zoom } from "./zoom.js";
+import { find, findAll } from "../lib/dom.js";
+import { observe } from "../lib/lifetime.js";
 import { NumberGroup } from "../lib/number_group.js";
-import { fitted, moved, resized, same, spanned } from "./rectangle.js";
+import { Box } from "./box.js";
+import { Dragging } from "./dragging.js";
+import { Gestures } from "./gestures.js";
+import { History } from "./history.js";
+import { SIDES, explain, fit, move, parse, resize, same } from "./rectangle.js";
+import { Toolbar } from "./toolbar.js";
+import { View } from "./view.js";
 
-export const SIDES = ["x", "y", "width", "height"];
-const LARGEST = 3; // times that a small photograph is enlarged on the screen
+/** @import { Rectangle, Side } from "./rectangle.js" */
+/** @import { Tool, ZoomTool } from "./toolbar.js" */
+/** @import { Picture } from "./view.js" */
+
+/** @type {Record<string, [dx: number, dy: number]>} */
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+/** @type {Record<string, ZoomTool>} */
 const ZOOMS = { "+": "in", "=": "in", "-": "out", 0: "fit" };
-const WHOLE_AGAIN = 1.02; // an enlargement that is none
 
-/** Say what had to give way to the side that was typed. */
-function gaveWay(side, wanted, crop) {
-  const long = { x: "width", y: "height" }[side] ?? side;
-  const start = long === "width" ? "x" : "y";
-  if (crop[long] !== wanted[long]) return `The ${long} is ${crop[long]} now: there is no more.`;
-  return `${start} is ${crop[start]} now: from ${wanted[start]} on, a ${long} of ${wanted[long]} does not fit.`;
-}
-
-/** The editor of one input's crop; `root` holds the photograph's frame and the fields. */
+/** The editor of one input's crop. */
 export class Crop {
-  constructor(root) {
-    this.form = root.closest("form");
-    this.frame = root.querySelector(".frame");
-    this.ground = this.frame.parentElement;
-    this.tools = root.querySelector("[id$=crop-tools]");
-    this.readout = root.querySelector("[id$=crop-size]");
-    this.box = new Box(this.frame, root.querySelector("legend"));
-    this.zoom = new Zoom();
-    this.steps = new Steps();
-    this.drawing = false; // whether the next drag draws, wherever it begins
-    const fields = SIDES.map((side) => [side, root.querySelector(`[data-side=${side}]`)]);
-    this.fields = new NumberGroup(Object.fromEntries(fields), root.querySelector("[data-fit=crop]"), {
-      read: () => this.fields.read((side) => this.steps.now[side]),
-      fitted: (crop) => fitted(crop, this.size),
-      words: gaveWay,
-      typed: (crop) => this.preview(crop ?? this.steps.now),
-      left: (crop) => this.change(crop),
+  drawing = false; // whether the next drag draws, wherever it begins
+
+  /**
+   * @param {HTMLElement} root holds the photograph's frame and the fields
+   * @param {AbortSignal} signal
+   */
+  constructor(root, signal) {
+    this.form = /** @type {HTMLElement} */ (root.closest("form"));
+    this.view = new View(find(root, ".frame"));
+    this.box = new Box(this.view.frame, find(root, "legend"));
+    this.tools = new Toolbar(root, {
+      all: () => this.change(this.everything),
+      suggested: () => this.change(this.suggested),
+      tool: (name) => this.use(name),
     });
-    this.gestures = new Gestures(this.frame, {
-      kind: (event, finger) => this.kind(event, finger),
-      begin: (drag) => this.begin(drag),
-      dragged: (drag, at) => this.pull(drag, at),
-      end: (drag) => this.end(drag),
-      cancel: (drag) => drag.under && this.put(drag.before),
-      grip: (at) => ({ ...this.at(at), times: this.zoom.times }),
-      zoom: (grip, factor, at) => this.look(grip, at, grip.times * factor),
-      settle: () => this.settle(),
+    const field = (/** @type {Side} */ side) => find(root, `[data-side=${side}]`, HTMLInputElement);
+    const fields = { x: field("x"), y: field("y"), width: field("width"), height: field("height") };
+    /** @type {NumberGroup<Side>} */
+    this.fields = new NumberGroup(fields, find(root, "[data-fit=crop]"), {
+      read: () => this.fields.read((side) => this.history.now[side]),
+      fit: (crop) => fit(crop, this.view.size),
+      explain,
+      preview: (crop) => this.preview(crop ?? this.history.now),
+      keep: (crop) => this.change(crop),
     });
-    this.tools.hidden = false;
-    for (const hint of root.querySelectorAll(".gestures")) hint.hidden = false;
-    this.listen();
-    this.readSize();
+    this.gestures = new Gestures(this.view.frame, new Dragging(this));
+    for (const hint of findAll(root, ".gestures")) hint.hidden = false;
+    this.boundFields();
+    this.shown = fit(this.read() ?? this.suggested, this.view.size);
+    this.history = new History(this.shown);
     this.follow();
-    new ResizeObserver(() => this.layOut()).observe(this.ground);
-    window.addEventListener("resize", () => this.layOut());
+    this.listen(signal);
   }
 
-  readSize() {
-    this.size = { width: Number(this.frame.dataset.width), height: Number(this.frame.dataset.height) };
-    const { width, height } = this.size;
+  /** Tell the fields how large their numbers may be. */
+  boundFields() {
+    const { width, height } = this.view.size;
     if (!width) return;
     const most = { x: width - 1, y: height - 1, width, height };
-    for (const side of SIDES) this.fields.fields[side].dataset.max = most[side];
+    for (const side of SIDES) this.fields.fields[side].dataset.max = String(most[side]);
   }
 
+  get everything() {
+    return { x: 0, y: 0, ...this.view.size };
+  }
+
+  /** @returns {Rectangle} */
   get suggested() {
-    const wanted = this.tools.querySelector("[data-suggested]").dataset.crop.split(",").map(Number);
-    const [x, y, width, height] = wanted.length === 4 ? wanted : [0, 0, this.size.width, this.size.height];
-    return { x, y, width, height };
+    return parse(this.tools.suggested.dataset.crop ?? "") ?? this.everything;
   }
 
-  /** Show another photograph, or a clip if it has an address as such, with the crop to start from. */
-  show({ address, video, title, width, height, crop }) {
-    this.frame.querySelector("img, video")?.remove();
-    const shown = document.createElement(video ? "video" : "img");
-    if (video) Object.assign(shown, { src: video, poster: address, loop: true, muted: true, playsInline: true, ariaLabel: title });
-    else Object.assign(shown, { src: address, alt: title });
-    Object.assign(shown, { width, height });
-    this.frame.prepend(shown);
-    Object.assign(this.frame.dataset, { width, height });
-    this.tools.querySelector("[data-crop=all]").textContent = video ? "Whole frame" : "Whole photograph";
-    this.tools.querySelector("[data-suggested]").dataset.crop = crop;
-    this.readSize();
-    this.zoom.whole();
-    this.steps.start(this.suggested);
+  /**
+   * Show another photograph or clip.
+   *
+   * @param {Picture} picture
+   * @param {string} suggested the crop to start from
+   */
+  show(picture, suggested) {
+    this.view.show(picture);
+    this.tools.all.textContent = picture.video ? "Whole frame" : "Whole photograph";
+    this.tools.suggested.dataset.crop = suggested;
+    this.boundFields();
     this.shown = this.suggested;
+    this.history = new History(this.shown);
     this.layOut();
     this.put(this.shown);
   }
@@ -101,177 +98,148 @@ export class Crop {
   /** Take what the fields say; those left empty take the crop to start from. */
   follow() {
     const { empty } = this.fields;
-    const crop = fitted(this.read() ?? this.shown ?? this.suggested, this.size);
-    if (!this.shown || !same(crop, this.shown)) this.steps.start(crop);
+    const crop = fit(this.read() ?? this.shown, this.view.size);
+    if (!same(crop, this.shown)) this.history = new History(crop);
     this.shown = crop;
-    if (empty && this.size.width) this.fields.write(crop);
+    if (empty && this.view.size.width) this.fields.write(crop);
     this.draw(); // also says what it is where nothing is on the screen yet
     this.layOut();
   }
 
   layOut() {
-    const style = getComputedStyle(this.ground);
-    const room = this.ground.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
-    if (room <= 0 || !this.size.width) return; // not on the screen
-    const narrow = window.matchMedia("(max-width: 960px)").matches;
-    const tall = Math.max(240, narrow ? window.innerHeight * 0.6 : window.innerHeight - 360);
-    const scale = Math.min(room / this.size.width, tall / this.size.height, LARGEST);
-    this.frame.style.width = `${this.size.width * scale}px`;
-    this.frame.style.height = `${this.size.height * scale}px`;
-    this.frame.classList.add("ready");
-    this.zoom.layOut(this.size, scale);
-    this.draw();
+    if (this.view.layOut()) this.draw();
   }
 
   draw() {
-    const { zoom, size, steps } = this;
-    if (size.width) this.frame.dataset.crop = SIDES.map((side) => this.shown[side]).join(",");
-    if (!zoom.size) return; // not laid out yet
-    const { width, height } = this.shown;
-    this.box.draw(this.shown, zoom, size.width * zoom.base, size.height * zoom.base);
-    const at = `translate(${-zoom.x * zoom.scale}px, ${-zoom.y * zoom.scale}px) scale(${zoom.times})`;
-    this.frame.querySelector("img, video").style.transform = zoom.zoomed ? at : "";
-    this.frame.classList.toggle("zoomed", zoom.zoomed);
-    this.frame.classList.toggle("drawing", this.drawing);
-    const off = { undo: !steps.past.length, redo: !steps.future.length, in: zoom.largest, out: !zoom.zoomed, fit: !zoom.zoomed };
-    for (const [tool, none] of Object.entries(off)) this.tool(tool).setAttribute("aria-disabled", String(none)); // keeps the focus
-    this.tool("draw").setAttribute("aria-pressed", String(this.drawing));
-    this.readout.textContent = this.drawing
-      ? "Drag from one corner of the new crop to the other."
-      : `${width} × ${height} of ${size.width} × ${size.height} at ${Math.round(zoom.scale * 100)} %`;
+    const { drawing, history, shown, view } = this;
+    const { size, zoom } = view;
+    if (size.width) view.frame.dataset.crop = SIDES.map((side) => shown[side]).join(",");
+    if (!zoom.base) return; // not laid out yet
+    view.draw();
+    view.frame.classList.toggle("drawing", drawing);
+    this.box.draw(shown, zoom, size.width * zoom.base, size.height * zoom.base);
+    const [undo, redo] = [!history.past.length, !history.future.length];
+    const percent = Math.round(zoom.scale * 100);
+    this.tools.show(
+      { undo, redo, in: zoom.largest, out: !zoom.zoomed, fit: !zoom.zoomed },
+      drawing,
+      drawing
+        ? "Drag from one corner of the new crop to the other."
+        : `${shown.width} × ${shown.height} of ${size.width} × ${size.height} at ${percent} %`,
+    );
   }
 
-  tool(name) {
-    return this.tools.querySelector(`[data-tool=${name}]`);
-  }
-
-  /** Show a crop that may still change. */
+  /**
+   * Show a crop that may still change.
+   *
+   * @param {Rectangle} crop
+   */
   put(crop) {
     this.fields.write(crop);
     this.preview(crop);
   }
 
-  /** Show what the fields say. */
+  /**
+   * Show what the fields say.
+   *
+   * @param {Rectangle} crop
+   */
   preview(crop) {
     this.shown = crop;
     this.draw();
     this.form.dispatchEvent(new CustomEvent("crop"));
   }
 
-  /** Set the crop; a change that goes on is one with the change before. */
+  /**
+   * Set the crop; a change that goes on is one with the change before.
+   *
+   * @param {Rectangle} crop
+   */
   write(crop, goesOn = false) {
-    this.steps.keep(crop, goesOn);
+    this.history.keep(crop, goesOn);
     this.put(crop);
   }
 
-  /** Set the crop other than by a pointer, and bring it into view. */
+  /**
+   * Set the crop other than by a pointer, and bring it into view.
+   *
+   * @param {Rectangle} crop
+   */
   change(crop, goesOn = false) {
-    this.zoom.reveal(crop);
+    this.view.zoom.reveal(crop);
     this.write(crop, goesOn);
   }
 
-  undo(way = "undo") {
+  /** @param {"undo" | "redo"} way */
+  step(way) {
     this.gestures.cancel();
     const written = this.read();
     // What is half typed, or no number, goes first.
-    if (way === "redo" || (written && same(written, this.steps.now))) this.steps[way]();
-    this.change(this.steps.now);
+    if (way === "redo" || (written && same(written, this.history.now))) this.history[way]();
+    this.change(this.history.now);
   }
 
-  listen() {
-    this.box.element.addEventListener("keydown", (event) => this.key(event));
-    this.box.element.addEventListener("focus", () => {
-      if (!this.zoom.zoomed || this.gestures.drag) return;
-      this.zoom.reveal(this.shown);
+  /** @param {AbortSignal} signal */
+  listen(signal) {
+    const { box, tools, view } = this;
+    box.element.addEventListener("keydown", (event) => this.key(event));
+    box.element.addEventListener("focus", () => {
+      if (!view.zoom.zoomed || this.gestures.drag) return;
+      view.zoom.reveal(this.shown);
       this.draw();
     });
-    this.tools.addEventListener("click", ({ target }) => this.use(target.closest("button")));
-    for (const part of [this.frame, this.tools]) part.addEventListener("keydown", (event) => this.command(event));
+    for (const part of [view.frame, tools.element]) part.addEventListener("keydown", (event) => this.command(event));
     // Browsers put back what was in the fields when one returns to the page; the box follows.
-    window.addEventListener("pageshow", () => {
+    const comeBack = () => {
       this.follow();
       this.form.dispatchEvent(new CustomEvent("crop"));
-    });
+    };
+    window.addEventListener("pageshow", comeBack, { signal });
+    window.addEventListener("resize", () => this.layOut(), { signal });
+    observe(new ResizeObserver(() => this.layOut()), view.ground, signal);
   }
 
-  use(button) {
-    if (!button || button.getAttribute("aria-disabled") === "true") return;
-    const { tool, crop } = button.dataset;
-    if (crop === "all") this.change({ x: 0, y: 0, ...this.size });
-    else if (crop) this.change(this.suggested);
-    else if (tool === "draw") this.arm(!this.drawing);
-    else if (tool === "undo" || tool === "redo") this.undo(tool);
+  /** @param {Tool} tool */
+  use(tool) {
+    if (tool === "draw") this.arm(!this.drawing);
+    else if (tool === "undo" || tool === "redo") this.step(tool);
     else this.enlarge(tool);
   }
 
-  /** Let the next drag draw a crop, or not. */
+  /**
+   * Let the next drag draw a crop, or not.
+   *
+   * @param {boolean} on
+   */
   arm(on) {
     this.drawing = on;
     this.draw();
   }
 
-  /** Zoom by a step about the middle of the crop, or of what is seen where the crop is not. */
+  /**
+   * Zoom by a step about the middle of the crop, or of what is seen where the crop is not.
+   *
+   * @param {ZoomTool} way
+   */
   enlarge(way) {
+    const { zoom } = this.view;
     const { x, y, width, height } = this.shown;
-    if (way === "fit") this.zoom.whole();
-    else this.zoom.about(way === "in" ? Math.SQRT2 : Math.SQRT1_2, { x: x + width / 2, y: y + height / 2 });
-    if (way === "in") this.zoom.reveal(this.shown);
+    if (way === "fit") zoom.whole();
+    else zoom.about(way === "in" ? Math.SQRT2 : Math.SQRT1_2, { x: x + width / 2, y: y + height / 2 });
+    if (way === "in") zoom.reveal(this.shown);
     this.settle();
   }
 
-  /** Bring a point of the original to a place on the screen. */
-  look(point, [left, top], times) {
-    const bounds = this.frame.getBoundingClientRect();
-    this.zoom.hold(point, left - bounds.left, top - bounds.top, times);
-    this.draw();
-  }
-
   settle() {
-    if (this.zoom.times < WHOLE_AGAIN) this.zoom.whole();
+    this.view.settle();
     this.draw();
   }
 
-  /** Where in the original a place on the screen is. */
-  at([left, top]) {
-    const bounds = this.frame.getBoundingClientRect();
-    return { x: this.zoom.x + (left - bounds.left) / this.zoom.scale, y: this.zoom.y + (top - bounds.top) / this.zoom.scale };
-  }
-
-  /** What a press on the frame drags, if anything: a finger that neither moves the crop nor the view scrolls the page. */
-  kind({ button, target }, finger) {
-    const onBox = target === this.box.element;
-    if (button === 1) return this.zoom.zoomed && "pan";
-    if (this.drawing) return "draw";
-    if (target.dataset.edge) return "resize";
-    if (finger) return onBox && !this.box.fills ? "move" : this.zoom.zoomed && "pan";
-    const everything = same(this.shown, { x: 0, y: 0, ...this.size }); // cannot be moved: a drag draws anew
-    return onBox && !everything ? "move" : "draw";
-  }
-
-  begin(drag) {
-    if (drag.kind !== "pan") this.box.element.focus({ preventScroll: true }); // and a number field is left
-    Object.assign(drag, { from: this.at(drag.screen), before: this.shown });
-  }
-
-  pull(drag, screen) {
-    const [to, { size }] = [this.at(screen), this];
-    const [dx, dy] = [to.x - drag.from.x, to.y - drag.from.y];
-    if (drag.kind === "pan") this.look(drag.from, screen);
-    else if (drag.kind === "move") this.put(moved(drag.before, dx, dy, size));
-    else if (drag.kind === "resize") this.put(resized(drag.before, drag.edge, dx, dy, size));
-    else {
-      const drawn = spanned(drag.from, to, size);
-      drag.drawn = Math.min(drawn.width, drawn.height) * this.zoom.scale >= drag.slop; // a line is a slip
-      this.put(drag.drawn ? drawn : drag.before);
-    }
-  }
-
-  end(drag) {
-    if (drag.drawn) this.drawing = false;
-    if (drag.under) this.write(this.shown);
-  }
-
-  /** Keys of the whole editor, but not of its number fields, which take back what was typed by themselves. */
+  /**
+   * Keys of the whole editor, but not of its number fields, which take back what was typed by themselves.
+   *
+   * @param {KeyboardEvent} event
+   */
   command(event) {
     if (event.key === "Escape") {
       this.gestures.cancel();
@@ -279,20 +247,21 @@ export class Crop {
     }
     if (!(event.ctrlKey || event.metaKey) || event.altKey) return;
     const letter = event.key.toLowerCase();
-    const way = { z: event.shiftKey ? "redo" : "undo", y: "redo" }[letter];
-    if (!way) return;
+    if (letter !== "z" && letter !== "y") return;
     event.preventDefault();
-    this.undo(way);
+    this.step(letter === "y" || event.shiftKey ? "redo" : "undo");
   }
 
+  /** @param {KeyboardEvent} event */
   key(event) {
-    const arrow = ARROWS[event.key];
+    const { key, ctrlKey, shiftKey, repeat } = event;
+    const [arrow, zoom] = [ARROWS[key], ZOOMS[key]];
     if (event.altKey || event.metaKey) return;
-    if (ZOOMS[event.key] && !event.ctrlKey) this.enlarge(ZOOMS[event.key]);
+    if (zoom && !ctrlKey) this.enlarge(zoom);
     else if (arrow) {
-      const [dx, dy] = arrow.map((step) => step * (event.ctrlKey ? 10 : 1));
-      const { shown, size } = this;
-      this.change(event.shiftKey ? resized(shown, "se", dx, dy, size) : moved(shown, dx, dy, size), event.repeat);
+      const [dx, dy] = ctrlKey ? [10 * arrow[0], 10 * arrow[1]] : arrow;
+      const { size } = this.view;
+      this.change(shiftKey ? resize(this.shown, "se", dx, dy, size) : move(this.shown, dx, dy, size), repeat);
     } else return;
     event.preventDefault();
   }

@@ -1,14 +1,25 @@
-// The range of a clip’s frames that plays over and over, beside its crop, and single frames of it. Frame k is on the screen from
-// k / rate seconds on.
+// Playback of a range of a clip's frames, over and over, and of single ones. Frame k is on the screen from k / rate
+// seconds on.
+
+/** @import { FrameRange } from "./frame_range.js" */
 
 export const REDUCED = window.matchMedia("(prefers-reduced-motion: reduce)");
 
-/** `told` is called with the number of the frame that is on the screen, whenever it changes. */
 export class RangePlayback {
-  constructor(video, rate, told) {
-    Object.assign(this, { video, rate, told });
-    this.range = { first: 0, count: Infinity };
-    this.next = null; // the frame to seek once the browser has found the one before
+  /** @type {FrameRange} */
+  range = { first: 0, count: Infinity };
+  /** @type {number | null} */
+  next = null; // the frame to seek once the browser has found the one before
+
+  /**
+   * @param {HTMLVideoElement} video
+   * @param {number} rate
+   * @param {(frame: number) => void} show takes the number of the frame that is on the screen, whenever it changes
+   */
+  constructor(video, rate, show) {
+    this.video = video;
+    this.rate = rate;
+    this.show = show;
     video.controls = false; // the crop lies over them
     video.addEventListener("seeked", () => {
       const { next } = this;
@@ -22,13 +33,17 @@ export class RangePlayback {
     };
     video.addEventListener("loadedmetadata", cover);
     if (video.readyState >= HTMLMediaElement.HAVE_METADATA) cover(); // it was quicker than this script
-    if (video.requestVideoFrameCallback) this.watch();
-    else video.addEventListener("timeupdate", () => this.passed(video.currentTime));
+    if ("requestVideoFrameCallback" in video) this.watch();
+    else this.watchTime();
+  }
+
+  watchTime() {
+    this.video.addEventListener("timeupdate", () => this.pass(this.video.currentTime));
   }
 
   watch() {
-    this.video.requestVideoFrameCallback((now, { mediaTime }) => {
-      this.passed(mediaTime + 0.25 / this.rate); // rounding of a file's time stamps
+    this.video.requestVideoFrameCallback((_now, { mediaTime }) => {
+      this.pass(mediaTime + 0.25 / this.rate); // rounding of a file's time stamps
       this.watch();
     });
   }
@@ -37,18 +52,20 @@ export class RangePlayback {
     return !this.video.paused;
   }
 
-  passed(time) {
+  /**
+   * Show a moment, and go back to the first frame at the end of the range.
+   *
+   * @param {number} time
+   */
+  pass(time) {
     const { first, count } = this.range;
     const frame = Math.floor(time * this.rate);
-    this.told(frame);
-    const whole = first === 0 && this.end >= this.video.duration * this.rate - 0.5; // the browser itself goes round
+    this.show(frame);
+    const whole = first === 0 && count >= this.video.duration * this.rate - 0.5; // the browser itself goes round
     if (this.playing && !whole && (frame < first || frame >= first + count - 1)) this.seek(first);
   }
 
-  get end() {
-    return this.range.first + this.range.count;
-  }
-
+  /** @param {number} frame */
   seek(frame) {
     if (this.video.seeking) this.next = frame;
     else this.video.currentTime = (frame + 0.5) / this.rate;

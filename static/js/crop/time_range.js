@@ -1,68 +1,65 @@
-// The time range of a clip. The two numeric fields are the truth: the reel shows them, and dragging its ends writes to them
-// and shows their frames. Of a clip, a still method takes the one frame at the first end. Changes are "crop" events.
+// The time range of a clip. The two numeric fields are the truth: the reel shows them, and dragging its ends writes to
+// them and shows their frames. Of a clip, a still method takes the one frame at the first end. Changes are "crop"
+// events.
 
-import { RangePlayback, REDUCED } from "./range_playback.js";
+import { clamp } from "../lib/clamp.js";
+import { find, findAll, seek } from "../lib/dom.js";
 import { NumberGroup } from "../lib/number_group.js";
+import { explain, fit, move } from "./frame_range.js";
+import { RangePlayback, REDUCED } from "./range_playback.js";
+import { Reel } from "./reel.js";
 
-const KEYS = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1, PageDown: -10, PageUp: 10, Home: -Infinity, End: Infinity };
-const PARTS = { range: "Time range", first: "First frame", last: "Last frame" };
-const between = (value, low, high) => Math.min(Math.max(value, low), high);
+/** @import { Extent, FrameRange, Part } from "./frame_range.js" */
 
-function element(name, attributes, parent) {
-  const made = document.createElement(name);
-  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
-  parent.append(made);
-  return made;
-}
+/** @type {Record<string, number>} */
+const KEYS = {
+  ArrowLeft: -1,
+  ArrowDown: -1,
+  ArrowRight: 1,
+  ArrowUp: 1,
+  PageDown: -10,
+  PageUp: 10,
+  Home: -Infinity,
+  End: Infinity,
+};
 
-/** Say what had to give way to the number that was typed. */
-function gaveWay(wanted, range) {
-  if (range.count > wanted.count) return "A video has 2 frames or more.";
-  if (range.count < wanted.count) return `It is ${range.count} frames now: the clip has no more.`;
-  return `It begins with frame ${range.first} now: from ${wanted.first} on, ${wanted.count} frames do not fit.`;
-}
-
-/** The editor of one input's time range; `root` holds the picture's frame and the fields. */
+/** The editor of one input's time range. */
 export class TimeRange {
-  constructor(root) {
+  plays = !REDUCED.matches;
+  /** @type {{ part: Part, id: number, from: number, first: number, end: number, playing: boolean } | null} */
+  drag = null;
+  /** @type {RangePlayback | null} */
+  playback = null;
+  /** @type {FrameRange | null} */
+  shown = null;
+  /** @type {FrameRange | null} */
+  kept = null;
+
+  /**
+   * @param {HTMLElement} root holds the picture's frame and the fields
+   * @param {AbortSignal} signal
+   */
+  constructor(root, signal) {
     this.root = root;
-    this.form = root.closest("form");
-    this.block = root.querySelector(".time");
-    const fields = ["first", "count"].map((part) => [part, root.querySelector(`[data-time=${part}]`)]);
-    this.fields = Object.fromEntries(fields);
-    this.group = new NumberGroup(this.fields, root.querySelector("[data-fit=time]"), {
+    this.form = /** @type {HTMLElement} */ (root.closest("form"));
+    this.block = find(root, ".time");
+    const field = (/** @type {string} */ part) => find(root, `[data-time=${part}]`, HTMLInputElement);
+    this.fields = { first: field("first"), count: field("count") };
+    /** @type {NumberGroup<keyof FrameRange>} */
+    this.group = new NumberGroup(this.fields, find(root, "[data-fit=time]"), {
       read: () => this.read(),
-      fitted: (range) => this.fitted(range),
-      words: (part, wanted, range) => (this.moving ? gaveWay(wanted, range) : `The last frame of the clip is ${range.first}.`),
-      typed: (range) => this.take(range ?? this.kept),
-      left: (range) => {
+      fit: (range) => fit(range, this.extent),
+      explain: (_part, meant, range) => explain(meant, range, this.extent),
+      preview: (range) => this.take(range ?? this.kept),
+      keep: (range) => {
         this.take(range);
-        this.keep();
+        this.keep(range);
         this.form.dispatchEvent(new CustomEvent("crop"));
       },
     });
-    this.plays = !REDUCED.matches;
-    this.drag = null;
-    /** @type {RangePlayback | undefined} */
-    this.clip = undefined;
-    this.build();
-    this.listen();
+    this.reel = new Reel(this.block);
+    this.listen(signal);
     this.follow();
-  }
-
-  build() {
-    const reel = element("div", { class: "reel" }, this.block);
-    this.block.prepend(reel);
-    this.button = element("button", { type: "button" }, reel);
-    this.track = element("div", { class: "track", role: "group", "aria-label": "Time range" }, reel);
-    this.handles = {};
-    for (const [part, label] of Object.entries(PARTS)) {
-      const kind = part === "range" ? "range" : "end";
-      const names = { class: kind, "data-part": part, role: "slider", tabindex: "0", "aria-label": label, "aria-valuemin": "0" };
-      this.handles[part] = element("span", names, this.track);
-    }
-    this.now = element("span", { class: "now", "aria-hidden": "true" }, this.track);
-    this.readout = element("output", { class: "hint" }, reel);
   }
 
   get total() {
@@ -74,175 +71,170 @@ export class TimeRange {
   }
 
   /** Whether the chosen method takes a video here. */
-  get moving() {
-    return this.form.querySelector("[name=method]:checked").classList.contains(`moves-${this.root.dataset.input}`);
+  get video() {
+    return find(this.form, "[name=method]:checked").classList.contains(`moves-${this.root.dataset.input}`);
   }
 
-  /** Show another sample, with the range it had, or all of it. */
+  /** @returns {Extent} */
+  get extent() {
+    return { total: this.total, video: this.video };
+  }
+
+  /**
+   * Show another sample, with the range it had, or all of it.
+   *
+   * @param {{ frames: number, rate: number }} sample
+   * @param {FrameRange | null} range
+   */
   show({ frames, rate }, range = null) {
     Object.assign(this.block.dataset, { frames, rate });
     this.block.hidden = this.total < 2;
-    for (const last of this.block.querySelectorAll(".last")) last.textContent = this.total - 1;
-    for (const total of this.block.querySelectorAll(".total")) total.textContent = this.total;
-    this.fields.first.dataset.max = this.total - 1;
-    this.fields.count.dataset.max = this.total;
-    for (const part of ["first", "count"]) this.fields[part].value = range?.[part] ?? "";
+    for (const last of findAll(this.block, ".last")) last.textContent = String(this.total - 1);
+    for (const total of findAll(this.block, ".total")) total.textContent = String(this.total);
+    this.fields.first.dataset.max = String(this.total - 1);
+    this.fields.count.dataset.max = String(this.total);
+    this.fields.first.value = range ? String(range.first) : "";
+    this.fields.count.value = range ? String(range.count) : "";
     this.follow();
   }
 
   /** The range as it is written, null where it is none; left empty, and of a still method, it goes on to the end. */
   read() {
-    const read = this.group.read((part, { first }) => (part === "first" ? 0 : this.total - first));
-    return read && !this.moving ? { first: read.first, count: this.total - read.first } : read;
-  }
-
-  /** Make a range fit: what is too long shrinks, and then begins where it fits. Of one frame the first one counts. */
-  fitted({ first, count }) {
-    if (!this.moving) {
-      const only = between(first, 0, this.total - 1);
-      return { first: only, count: between(count, 1, this.total - only) };
-    }
-    const long = between(count, 2, this.total);
-    return { first: between(first, 0, this.total - long), count: long };
+    const range = this.group.read((part, { first }) => (part === "first" ? 0 : this.total - first));
+    return range && !this.video ? { first: range.first, count: this.total - range.first } : range;
   }
 
   /** Take what the fields, the method and the sample say. */
   follow() {
-    const video = this.root.querySelector("video");
-    if (this.clip?.video !== video) this.clip = video && new RangePlayback(video, this.rate, (frame) => this.point(frame));
+    const video = seek(this.root, "video", HTMLVideoElement);
+    if (this.playback?.video !== video) {
+      this.playback = video && new RangePlayback(video, this.rate, (frame) => this.reel.mark(frame, this.total));
+    }
     if (!video) return;
-    const empty = this.fields.first.value === "" && this.fields.count.value === "";
-    this.take(this.fitted(this.read() ?? this.shown ?? { first: 0, count: this.total }));
-    this.kept = this.shown;
-    if (empty) this.keep();
+    const { empty } = this.group;
+    const range = fit(this.read() ?? this.shown ?? { first: 0, count: this.total }, this.extent);
+    this.take(range);
+    this.kept = range;
+    if (empty) this.keep(range);
   }
 
-  /** Show a range. */
+  /**
+   * Show a range.
+   *
+   * @param {FrameRange | null} range
+   */
   take(range) {
-    this.shown = range;
-    this.block.dataset.first = range.first;
-    this.draw();
-    this.clip.range = this.shown;
+    if (!range || !this.playback) return; // fields of no clip
+    const { playback } = this;
+    this.draw(range);
+    playback.range = range;
     const visible = this.block.checkVisibility?.() ?? true;
-    if (this.moving && this.plays && visible) this.clip.play();
-    else this.clip.pause();
-    if (!this.clip.playing) this.clip.seek(this.shown.first);
+    if (this.video && this.plays && visible) playback.play();
+    else playback.pause();
+    if (!playback.playing) playback.seek(range.first);
     this.name();
   }
 
-  keep() {
-    this.kept = this.shown;
-    this.group.write(this.shown);
+  /** @param {FrameRange} range */
+  keep(range) {
+    this.kept = range;
+    this.group.write(range);
   }
 
   name() {
-    this.button.textContent = this.clip.playing ? "Pause" : "Play";
-    this.button.hidden = !this.moving;
-    this.track.classList.toggle("still", !this.moving);
+    this.reel.name(this.playback?.playing ?? false, this.video);
   }
 
-  draw() {
-    const { first, count } = this.shown;
-    const [total, last] = [this.total, first + count - 1];
-    const place = (frame) => `${(100 * frame) / total}%`;
-    const { range, first: begin, last: end } = this.handles;
-    Object.assign(range.style, { left: place(first), width: place(count) });
-    begin.style.left = place(this.moving ? first : first + 0.5);
-    end.style.left = place(first + count);
-    const seconds = (frames) => `${(frames / this.rate).toFixed(2)} s`;
-    for (const [handle, value, most] of [[range, first, total - count], [begin, first, total - 1], [end, last, total - 1]]) {
-      handle.setAttribute("aria-valuemax", most);
-      handle.setAttribute("aria-valuenow", value);
-      handle.setAttribute("aria-valuetext", `${value}, at ${seconds(value)}`);
-    }
-    begin.setAttribute("aria-label", this.moving ? PARTS.first : "Frame");
-    this.readout.textContent = this.moving
-      ? `${first}–${last} of ${total} frames, ${seconds(count)}`
-      : `frame ${first} of ${total}, at ${seconds(first)}`;
+  /** @param {FrameRange} range */
+  draw(range) {
+    this.shown = range;
+    this.block.dataset.first = String(range.first);
+    this.reel.draw(range, this.extent, this.rate);
   }
 
-  /** Mark the frame that is on the screen. */
-  point(frame) {
-    this.now.style.left = `${(100 * (frame + 0.5)) / this.total}%`;
-  }
-
-  /** Move the range or one of its ends to begin or end with a frame, and show that one. */
+  /**
+   * Move the range or one of its ends to begin or end with a frame, and show that one.
+   *
+   * @param {Part} part
+   * @param {number} frame
+   */
   move(part, frame) {
-    const { first, count } = this.shown;
-    const end = first + count;
-    if (part === "range") this.shown = { first: between(frame, 0, this.total - count), count };
-    else if (part === "last") this.shown = this.fitted({ first, count: Math.max(frame, first) + 1 - first });
-    else if (!this.moving) this.shown = this.fitted({ first: frame, count: this.total }); // a moving one then takes the rest
-    else {
-      const begin = between(frame, 0, end - 2);
-      this.shown = { first: begin, count: end - begin };
-    }
-    this.keep();
-    this.draw();
-    this.clip.range = this.shown;
-    this.clip.pause();
-    this.clip.seek(part === "last" ? this.shown.first + this.shown.count - 1 : this.shown.first);
+    const { playback } = this;
+    if (!this.shown || !playback) return;
+    const range = move(part, frame, this.shown, this.extent);
+    this.keep(range);
+    this.draw(range);
+    playback.range = range;
+    playback.pause();
+    playback.seek(part === "last" ? range.first + range.count - 1 : range.first);
     this.form.dispatchEvent(new CustomEvent("crop"));
   }
 
-  listen() {
-    this.button.addEventListener("click", () => {
-      this.plays = !this.clip.playing;
-      if (this.plays) this.clip.play();
-      else this.clip.pause();
+  /** @param {AbortSignal} signal */
+  listen(signal) {
+    const { button, track } = this.reel;
+    button.addEventListener("click", () => {
+      this.plays = !this.playback?.playing;
+      if (this.plays) this.playback?.play();
+      else this.playback?.pause();
     });
     for (const kind of ["play", "pause"]) {
       // These do not bubble, and the video may be another one later.
-      this.root.addEventListener(kind, () => this.clip && this.name(), true);
+      this.root.addEventListener(kind, () => this.playback && this.name(), true);
     }
-    this.track.addEventListener("pointerdown", (event) => this.press(event));
-    this.track.addEventListener("pointermove", (event) => this.pull(event));
-    for (const kind of ["pointerup", "pointercancel"]) this.track.addEventListener(kind, (event) => this.letGo(event));
-    this.track.addEventListener("keydown", (event) => this.key(event));
-    this.form.addEventListener("change", (event) => event.target.name === "method" && this.follow());
-    window.addEventListener("pageshow", () => this.follow());
+    track.addEventListener("pointerdown", (event) => this.press(event));
+    track.addEventListener("pointermove", (event) => this.pull(event));
+    track.addEventListener("pointerup", (event) => this.lift(event));
+    track.addEventListener("pointercancel", (event) => this.lift(event));
+    track.addEventListener("keydown", (event) => this.key(event));
+    this.form.addEventListener("change", ({ target }) => {
+      if (target instanceof HTMLInputElement && target.name === "method") this.follow();
+    });
+    window.addEventListener("pageshow", () => this.follow(), { signal });
   }
 
-  at(event) {
-    const { left, width } = this.track.getBoundingClientRect();
-    return ((event.clientX - left) / width) * this.total;
-  }
-
+  /** @param {PointerEvent} event */
   press(event) {
-    if (event.button !== 0 || this.drag || !this.clip) return;
+    if (event.button !== 0 || this.drag || !this.playback || !this.shown) return;
     event.preventDefault();
-    const at = this.at(event);
+    const at = this.reel.frameAt(event, this.total);
     const { first, count } = this.shown;
-    const near = this.moving && Math.abs(at - first - count) < Math.abs(at - first) ? "last" : "first";
-    const part = event.target.dataset.part ?? near; // beside the range: the end that is nearer comes here
-    this.drag = { part, id: event.pointerId, from: at, first, end: first + count, playing: this.clip.playing };
-    this.track.setPointerCapture(event.pointerId);
-    this.handles[part].focus({ preventScroll: true });
-    if (!event.target.dataset.part) this.move(part, Math.floor(at));
+    const near = this.video && Math.abs(at - first - count) < Math.abs(at - first) ? "last" : "first";
+    const held = this.reel.partOf(event);
+    const part = held ?? near; // beside the range: the end that is nearer comes here
+    const { playing } = this.playback;
+    this.drag = { part, id: event.pointerId, from: at, first, end: first + count, playing };
+    this.reel.track.setPointerCapture(event.pointerId);
+    this.reel.handles[part].focus({ preventScroll: true });
+    if (!held) this.move(part, Math.floor(at));
   }
 
+  /** @param {PointerEvent} event */
   pull(event) {
-    if (event.pointerId !== this.drag?.id) return;
+    if (!this.drag || event.pointerId !== this.drag.id) return;
     const { part, from, first, end } = this.drag;
-    const at = this.at(event);
-    if (part === "last") this.move(part, Math.round(end + at - from) - 1);
-    else this.move(part, Math.round(first + at - from));
+    const by = this.reel.frameAt(event, this.total) - from;
+    if (part === "last") this.move(part, Math.round(end + by) - 1);
+    else this.move(part, Math.round(first + by));
   }
 
-  letGo(event) {
+  /** @param {PointerEvent} event */
+  lift(event) {
     if (event.pointerId !== this.drag?.id) return;
-    if (this.drag.playing) this.clip.play();
+    if (this.drag.playing) this.playback?.play();
     this.drag = null;
   }
 
+  /** @param {KeyboardEvent} event */
   key(event) {
-    const { part } = event.target.dataset;
+    const part = this.reel.partOf(event);
     let step = KEYS[event.key];
-    if (!part || !step || event.altKey || event.metaKey || event.shiftKey) return;
+    if (!part || !step || !this.shown || event.altKey || event.metaKey || event.shiftKey) return;
     event.preventDefault();
     if (event.ctrlKey) step *= 10;
     this.plays = false;
     const { first, count } = this.shown;
-    this.move(part, between((part === "last" ? first + count - 1 : first) + step, 0, this.total - 1));
+    const from = part === "last" ? first + count - 1 : first;
+    this.move(part, clamp(from + step, 0, this.total - 1));
   }
 }

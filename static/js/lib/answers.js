@@ -1,12 +1,14 @@
-// What the service answers, and in plain words why there is no answer: its own reason, or that something in front of it spoke
+// Answers of the service, and in plain words why there is none: its own reason, or that something in front of it spoke
 // in its place. Proxies answer with pages of their own, so nothing is taken for JSON before it has been read as such.
 
 const BROKEN = "The connection broke: look whether you are online, and try again.";
 const SLOW = "The service has not answered in time: wait a minute, and try again.";
 const REPLACED =
   "Something between this browser and the service answered in its place, such as a network’s login page: reload the page, and try again.";
-const CLOSED = "Something in front of the service wants a login, or does not let this through: reload the page, and try again.";
+const CLOSED =
+  "Something in front of the service wants a login, or does not let this through: reload the page, and try again.";
 const AWAY = "The service cannot be reached at the moment: wait a minute, and try again.";
+/** @type {Record<number, string>} */
 const WORDS = {
   401: CLOSED,
   403: CLOSED,
@@ -22,31 +24,63 @@ const WORDS = {
 
 /** Why a request has no answer. `status` is 0 where none came at all, and `final` says that asking again changes nothing. */
 export class Refusal extends Error {
+  /**
+   * @param {string} message
+   * @param {number} status
+   * @param {boolean} final
+   */
   constructor(message, status = 0, final = false) {
     super(message);
-    Object.assign(this, { status, final });
+    this.status = status;
+    this.final = final;
   }
 }
 
-/** The object that an answer holds; raises a `Refusal`. */
+/**
+ * What is known of a request that failed; what is no refusal is a fault of ours, and raised again.
+ *
+ * @param {unknown} error
+ * @returns {Refusal}
+ */
+export function refusalOf(error) {
+  if (error instanceof Refusal) return error;
+  throw error;
+}
+
+/**
+ * The object that an answer holds; raises a `Refusal`.
+ *
+ * @param {number} status
+ * @param {string} text
+ * @returns {object}
+ */
 export function read(status, text) {
-  let said = null;
+  /** @type {unknown} */
+  let content = null;
   try {
-    said = JSON.parse(text);
+    content = JSON.parse(text);
   } catch {
     // A page of something in between, or cut off.
   }
   if (!status) throw new Refusal(BROKEN);
+  const record = typeof content === "object" ? content : null;
   if (status >= 200 && status < 300) {
-    if (said === null || typeof said !== "object") throw new Refusal(REPLACED, status);
-    return said;
+    if (record === null) throw new Refusal(REPLACED, status);
+    return record;
   }
-  const own = typeof said?.detail === "string"; // our own problem+json
-  const words = WORDS[status] ?? `The service, or a proxy in front of it, answered ${status} without a reason: wait a minute, and try again.`;
-  throw new Refusal(own ? said.detail : words, status, own && status < 500);
+  if (record && "detail" in record && typeof record.detail === "string") {
+    throw new Refusal(record.detail, status, status < 500); // our own problem+json
+  }
+  const unexplained = `The service, or a proxy in front of it, answered ${status} without a reason: wait a minute, and try again.`;
+  throw new Refusal(WORDS[status] ?? unexplained, status);
 }
 
-/** Ask as `fetch` does, for at most `patience` milliseconds; raises a `Refusal`, or what `signal` was aborted with. */
+/**
+ * Ask as `fetch` does, for at most `patience` milliseconds; raises a `Refusal`, or what `signal` was aborted with.
+ *
+ * @param {string} address
+ * @param {RequestInit & { patience?: number }} options
+ */
 export async function ask(address, { signal, patience = Infinity, ...options } = {}) {
   const giveUp = new AbortController();
   const stop = () => giveUp.abort();

@@ -1,76 +1,120 @@
-// The inputs of a sample's page: editors of each one's crop and time range, and for further ones what is chosen or uploaded.
+// The inputs of a sample's page: editors of each one's crop and time range, and for further ones what is chosen or
+// uploaded.
 
-import { ask } from "../lib/answers.js";
 import { Crop } from "../crop/crop.js";
-import { start } from "../lib/start.js";
 import { TimeRange } from "../crop/time_range.js";
+import { ask, refusalOf } from "../lib/answers.js";
+import { append, find, findAll, seek } from "../lib/dom.js";
+import { start } from "../lib/start.js";
+
+/** @typedef {{ id: string, width: number, height: number, frames: number, rate: number | null }} Sample */
 
 const SMALL = 256; // pixels of a thumbnail's longer side, as on the home page
-const record = (sample) => `/api/v1/samples/${encodeURIComponent(sample)}`;
-const address = (sample, size) => `${record(sample)}/image?size=${size}`;
+const LARGE = 2048; // and of the picture that is cropped
+const SUGGESTED = 512; // pixels, at most, of the sides of an uploaded photograph's first crop
+
+/** @param {string} sample */
+const recordOf = (sample) => `/api/v1/samples/${encodeURIComponent(sample)}`;
+
+/**
+ * @param {string} sample
+ * @param {number} size
+ */
+const imageOf = (sample, size) => `${recordOf(sample)}/image?size=${size}`;
 
 let uploads = 0;
 
-/** Nothing is run while a photograph is on its way: it would be run without that one. */
-function count(change) {
+/**
+ * Nothing is run while a photograph is on its way: it would be run without that one.
+ *
+ * @param {number} change
+ */
+function countUploads(change) {
   uploads += change;
-  document.querySelector("button.main").disabled = uploads > 0;
+  find(document, "button.main", HTMLButtonElement).disabled = uploads > 0;
 }
 
 class Further {
-  constructor(root) {
+  /** @type {HTMLImageElement[]} */
+  thumbnails = [];
+
+  /**
+   * @param {HTMLElement} root
+   * @param {AbortSignal} signal
+   */
+  constructor(root, signal) {
     this.root = root;
-    this.crop = new Crop(root);
-    this.time = new TimeRange(root);
-    this.select = root.querySelector("select");
-    this.status = root.querySelector(".sending");
+    this.crop = new Crop(root, signal);
+    this.time = new TimeRange(root, signal);
+    this.legend = find(root, "legend");
+    this.select = find(root, "select", HTMLSelectElement);
+    this.status = find(root, ".sending");
     this.status.tabIndex = -1;
     this.shown = this.select.value;
-    root.querySelector("[name=show]").remove();
+    find(root, "[name=show]").remove();
+    this.wall = document.createElement("div");
     this.offerThumbnails();
-    this.offerUpload(root.querySelector("input[type=file]"), root.querySelector(".upload"));
+    this.offerUpload(find(root, "input[type=file]", HTMLInputElement), find(root, ".upload", HTMLButtonElement));
     this.select.addEventListener("change", () => this.follow());
-    window.addEventListener("pageshow", () => this.follow(true));
-    // Closed, an optional one is not taken.
+    window.addEventListener("pageshow", () => this.follow(true), { signal });
     const details = root.closest("details");
-    details?.addEventListener("toggle", () => {
-      if (!details.open) this.choose("");
-      this.offerToLeave(details);
-    });
     if (details) this.offerToLeave(details);
   }
 
-  /** Show what is chosen; `kept` says that the numbers of crop and time range are its own already. */
+  /**
+   * Show what is chosen.
+   *
+   * @param {boolean} kept whether the numbers of crop and time range are its own already
+   */
   follow(kept = false) {
     const sample = this.select.value;
     if (sample !== this.shown) {
       this.shown = sample;
-      const { width, height, frames, rate, crop, ...thanks } = this.select.selectedOptions[0].dataset;
-      const video = Number(frames) > 1 ? `${record(sample)}/video` : "";
-      this.thank({ ...thanks, kind: video ? "Clip" : "Photograph" });
-      for (const part of this.root.querySelectorAll(".ground, .numbers")) part.hidden = !sample;
+      const { width, height, frames, rate, crop = "", ...thanks } = this.select.selectedOptions[0]?.dataset ?? {};
+      const video = Number(frames) > 1 ? `${recordOf(sample)}/video` : "";
+      this.thank(video ? "Clip" : "Photograph", thanks);
+      for (const part of findAll(this.root, ".ground, .numbers")) part.hidden = !sample;
       const before = this.crop.read();
-      const shown = { address: address(sample, 2048), video, width: Number(width), height: Number(height), crop };
-      if (sample) this.crop.show({ ...shown, title: this.root.querySelector("legend").textContent });
-      this.time.show({ frames: frames ?? 1, rate: rate ?? 0 }, kept ? this.time.read() : null);
+      const size = { width: Number(width), height: Number(height) };
+      const picture = { address: imageOf(sample, LARGE), video, title: this.legend.textContent, ...size };
+      if (sample) this.crop.show(picture, crop);
+      this.time.show({ frames: Number(frames ?? 1), rate: Number(rate ?? 0) }, kept ? this.time.read() : null);
       if (kept && sample && before) this.crop.write(before);
     }
     for (const image of this.thumbnails) image.classList.toggle("current", image.dataset.sample === sample);
   }
 
+  /**
+   * Let an optional input be left out: closed, it is not taken.
+   *
+   * @param {HTMLDetailsElement} details
+   */
   offerToLeave(details) {
-    const name = this.root.querySelector("legend").textContent.toLowerCase();
-    details.querySelector("summary").textContent = details.open ? `Leave the ${name} out` : "Add another sample";
+    const summary = find(details, "summary");
+    const name = () => {
+      const leave = `Leave the ${this.legend.textContent.toLowerCase()} out`;
+      summary.textContent = details.open ? leave : "Add another sample";
+    };
+    details.addEventListener("toggle", () => {
+      if (!details.open) this.choose("");
+      name();
+    });
+    name();
   }
 
-  thank({ kind, credit, licence, url }) {
-    const line = this.root.querySelector(".credit");
+  /**
+   * @param {string} kind
+   * @param {{ credit?: string, licence?: string, url?: string }} thanks
+   */
+  thank(kind, { credit, licence, url }) {
+    const line = find(this.root, ".credit");
     line.hidden = !credit;
     if (!credit) return;
     const link = Object.assign(document.createElement("a"), { href: url, rel: "license", textContent: licence });
     line.replaceChildren(`${kind}: ${credit}, `, link);
   }
 
+  /** @param {string} sample */
   choose(sample) {
     if (this.select.value === sample) return;
     this.select.value = sample;
@@ -80,52 +124,70 @@ class Further {
 
   /** The same choice for the pointer; keyboards and screen readers have the select. */
   offerThumbnails() {
-    this.wall = document.createElement("div");
     this.wall.className = "thumbnails";
     this.wall.setAttribute("aria-hidden", "true");
-    this.thumbnails = [];
     for (const option of this.select.options) if (option.value) this.addThumbnail(option);
-    this.wall.addEventListener("click", ({ target }) => target.dataset.sample && this.choose(target.dataset.sample));
-    this.root.querySelector(".chosen").after(this.wall);
+    this.wall.addEventListener("click", ({ target }) => {
+      const sample = target instanceof HTMLElement && target.dataset.sample;
+      if (sample) this.choose(sample);
+    });
+    find(this.root, ".chosen").after(this.wall);
     this.follow();
   }
 
+  /** @param {HTMLOptionElement} option */
   addThumbnail({ value, textContent }) {
-    const image = document.createElement("img");
-    Object.assign(image, { loading: "lazy", alt: "", title: textContent, src: address(value, SMALL) });
-    image.dataset.sample = value;
+    const attributes = { loading: "lazy", alt: "", title: textContent, "data-sample": value };
+    const image = append("img", attributes, this.wall);
+    image.src = imageOf(value, SMALL);
     this.thumbnails.push(image);
-    this.wall.append(image);
   }
 
+  /**
+   * @param {HTMLInputElement} input
+   * @param {HTMLButtonElement} button
+   */
   offerUpload(input, button) {
-    input.closest(".file").hidden = true;
+    const line = /** @type {HTMLElement} */ (input.closest(".file"));
+    line.hidden = true;
     button.hidden = false;
     button.addEventListener("click", () => input.click());
     input.addEventListener("change", () => {
-      if (input.files.length) start(() => this.send(input, button));
+      const file = input.files?.[0];
+      if (!file) return;
+      input.value = "";
+      start(() => this.send(file, button));
     });
   }
 
-  async send(input, button) {
+  /**
+   * @param {File} file
+   * @param {HTMLButtonElement} button
+   */
+  async send(file, button) {
     const body = new FormData();
-    body.append("file", input.files[0]);
-    input.value = "";
+    body.append("file", file);
     button.disabled = true;
-    count(1);
-    this.tell("Sending …");
+    countUploads(1);
+    this.say("Sending …");
     try {
-      this.offer(await ask("/api/v1/samples", { method: "POST", body }));
-      this.tell("");
-    } catch (refusal) {
-      this.tell(refusal.message, true);
+      this.offer(/** @type {Sample} */ (await ask("/api/v1/samples", { method: "POST", body })));
+      this.say("");
+    } catch (error) {
+      this.say(refusalOf(error).message, true);
+    } finally {
+      button.disabled = false;
+      countUploads(-1);
     }
-    button.disabled = false;
-    count(-1);
   }
 
-  /** Say how the upload goes; who waits for it is led to a refusal, who has gone on to other things is not. */
-  tell(text, refused = false) {
+  /**
+   * Say how the upload goes; who waits for it is led to a refusal, who has gone on to other things is not.
+   *
+   * @param {string} text
+   * @param {boolean} refused
+   */
+  say(text, refused = false) {
     this.status.textContent = text;
     this.status.classList.toggle("error", refused);
     this.status.classList.toggle("hint", !refused);
@@ -133,9 +195,10 @@ class Further {
     if (refused && (activeElement === document.body || this.root.contains(activeElement))) this.status.focus();
   }
 
+  /** @param {Sample} sample */
   offer({ id, width, height, frames, rate }) {
     const option = new Option(frames > 1 ? "Your clip" : "Your photograph", id);
-    const [wide, high] = [Math.min(width, 512), Math.min(height, 512)];
+    const [wide, high] = [Math.min(width, SUGGESTED), Math.min(height, SUGGESTED)];
     const crop = [Math.floor((width - wide) / 2), Math.floor((height - high) / 2), wide, high].join(",");
     Object.assign(option.dataset, { width, height, frames, rate, crop });
     this.select.add(option);
@@ -144,26 +207,30 @@ class Further {
   }
 }
 
+const roots = findAll(document, "[data-input]");
+const legends = roots.map((root) => seek(root, ".several, legend:not(:has(*))"));
+
 /** Call the inputs as the chosen method does, where it has a name for each. */
 function nameInputs() {
-  const { titles } = document.querySelector("[name=method]:checked").dataset;
-  for (const [index, legend] of legends.entries()) {
+  const { titles } = find(document, "[name=method]:checked").dataset;
+  legends.forEach((legend, index) => {
+    if (!legend) return;
     legend.dataset.title ??= legend.textContent;
     legend.textContent = titles?.split("|")[index] ?? legend.dataset.title;
-  }
+  });
 }
 
-const legends = [...document.querySelectorAll("[data-input]")].map((root) => root.querySelector(".several, legend:not(:has(*))"));
-for (const radio of document.querySelectorAll("[name=method]")) radio.addEventListener("change", nameInputs);
+const { signal } = new AbortController(); // the inputs stay for as long as the page does
+for (const radio of findAll(document, "[name=method]")) radio.addEventListener("change", nameInputs);
 window.addEventListener("pageshow", nameInputs);
 nameInputs();
 
-for (const root of document.querySelectorAll("[data-input]")) {
+for (const root of roots) {
   if (root.dataset.input !== "1") {
-    new Further(root);
+    new Further(root, signal);
     continue;
   }
-  new Crop(root);
-  new TimeRange(root);
+  new Crop(root, signal);
+  new TimeRange(root, signal);
 }
-document.querySelector("#experiment > .visually-hidden").remove(); // stood in for the main button before those that show samples
+find(document, "#experiment > .visually-hidden").remove(); // stood in for the main button before those that show samples

@@ -1,42 +1,48 @@
-// The structure meter beside a crop. It follows the crop while that is dragged: one question at a time, the next one about
-// the newest crop. Its sentence is announced, its number is not, so that dragging does not chatter. What could not be asked is
-// not known: no verdict stands beside a crop that it is not about.
+// The structure meter beside a crop. It follows the crop while that is dragged: one question at a time, the next one
+// about the newest crop. Its sentence is announced, its number is not, so that dragging does not chatter. What could
+// not be asked is not known: no verdict stands beside a crop that it is not about.
 
-import { ask } from "../lib/answers.js";
+import { ask, refusalOf } from "../lib/answers.js";
+import { find, findAll, seek } from "../lib/dom.js";
 import { start } from "../lib/start.js";
+
+/** @typedef {{ delta: number | null, verdict: string, words: string }} Reading the structure index and what it means */
 
 const PATIENCE = 20_000; // milliseconds for one answer
 const [SOON, LATE] = [2_000, 60_000]; // milliseconds until a question that failed is asked again: from, doubling, up to
 
 class Meter {
+  question = ""; // the address that was asked last
+  asking = false;
+  pause = SOON;
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  timer = undefined;
+
+  /** @param {HTMLElement} root */
   constructor(root) {
     this.root = root;
-    const around = root.closest("fieldset, form");
-    this.frame = around.querySelector(".frame");
-    this.time = around.querySelector(".time");
-    this.select = around.querySelector("select[name$=sample]");
-    this.bar = root.querySelector(".meter-bar");
-    this.sentence = root.querySelector(".structure-words");
-    this.asked = "";
+    const around = /** @type {HTMLElement} */ (root.closest("fieldset, form"));
+    this.frame = find(around, ".frame");
+    this.time = find(around, ".time");
+    this.select = seek(around, "select[name$=sample]", HTMLSelectElement);
+    this.bar = find(root, ".meter-bar", SVGElement);
+    this.sentence = find(root, ".structure-words");
     // What is not known yet has its room already, so that nothing moves under the pointer when it comes.
     if (root.hidden) root.classList.add("unknown");
     root.hidden = false;
-    this.asking = false;
-    this.pause = SOON;
-    this.timer = 0;
     const follow = () => start(() => this.follow());
-    for (const change of ["crop", "change"]) root.closest("form").addEventListener(change, follow);
+    for (const change of ["crop", "change"]) root.closest("form")?.addEventListener(change, follow);
     window.addEventListener("online", follow);
     follow();
   }
 
   /** Whether the input is on the screen and has a sample. */
   get shown() {
-    return this.root.parentElement.checkVisibility() && Boolean(this.sample);
+    return Boolean(this.root.parentElement?.checkVisibility() && this.sample);
   }
 
   get sample() {
-    return this.select ? this.select.value : this.root.dataset.sample;
+    return this.select ? this.select.value : (this.root.dataset.sample ?? "");
   }
 
   /** What to ask; nothing where there is no crop to ask about. */
@@ -53,16 +59,17 @@ class Meter {
     clearTimeout(this.timer);
     this.asking = true;
     try {
-      for (let address = this.address(); address !== this.asked; address = this.address()) {
-        this.asked = address;
-        if (address) this.show(await ask(address, { patience: PATIENCE }));
+      for (let address = this.address(); address !== this.question; address = this.address()) {
+        this.question = address;
+        if (address) this.show(/** @type {Reading} */ (await ask(address, { patience: PATIENCE })));
         else if (this.shown) this.forget("");
       }
       this.pause = SOON;
-    } catch (refusal) {
-      this.forget(refusal.message);
-      if (!refusal.final) this.again();
-      else if (this.address() !== this.asked) this.again(0); // refused was a crop that has moved on meanwhile
+    } catch (error) {
+      const { message, final } = refusalOf(error);
+      this.forget(message);
+      if (!final) this.again();
+      else if (this.address() !== this.question) this.again(0); // refused was a crop that has moved on meanwhile
     } finally {
       this.asking = false;
     }
@@ -70,32 +77,41 @@ class Meter {
 
   /** Ask the same once more, later or with the next change. */
   again(pause = this.pause) {
-    this.asked = "";
+    this.question = "";
     this.timer = setTimeout(() => start(() => this.follow()), pause);
     if (pause) this.pause = Math.min(2 * pause, LATE);
   }
 
-  /** Say nothing of this crop, but why: such as one that holds transparent pixels, or a connection that broke. */
+  /**
+   * Say nothing of this crop, but why: such as one that holds transparent pixels, or a connection that broke.
+   *
+   * @param {string} reason
+   */
   forget(reason) {
     this.root.classList.add("unknown");
     delete this.root.dataset.verdict;
-    this.tell(reason);
+    this.say(reason);
   }
 
-  tell(words) {
+  /** @param {string} words */
+  say(words) {
     if (this.sentence.textContent !== words) this.sentence.textContent = words;
   }
 
+  /** @param {Reading} reading */
   show({ delta, verdict, words }) {
-    if (delta === null) return this.forget(words);
+    if (delta === null) {
+      this.forget(words);
+      return;
+    }
     const shown = Math.max(0, delta);
     const place = Math.min(1, Math.sqrt(shown / Number(this.bar.dataset.end)));
-    this.bar.querySelector(".meter-value").setAttribute("width", 100 * place);
-    this.root.querySelector(".meter-number").textContent = shown.toFixed(2);
+    find(this.bar, ".meter-value", SVGElement).setAttribute("width", String(100 * place));
+    find(this.root, ".meter-number").textContent = shown.toFixed(2);
     this.root.dataset.verdict = verdict;
     this.root.classList.remove("unknown");
-    this.tell(words);
+    this.say(words);
   }
 }
 
-for (const root of document.querySelectorAll(".structure[data-sample]")) new Meter(root);
+for (const root of findAll(document, ".structure[data-sample]")) new Meter(root);

@@ -1,4 +1,4 @@
-// A method page.
+// A method's page.
 
 import { offerCopies } from "../lib/copy.js";
 

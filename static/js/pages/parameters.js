@@ -1,102 +1,153 @@
-// The parameters beside the photograph: sizes that follow the crop, new seeds, and an address that keeps all of it, so that
-// Back, reload and a bookmark find the form as it was.
+// The parameters beside the photograph: sizes that follow the crop, new seeds, and an address that keeps all of it.
+
+import { parse } from "../crop/rectangle.js";
+import { addressOf, timeOf } from "../lib/address.js";
+import { find, seek } from "../lib/dom.js";
+
+/** @import { Input } from "../lib/address.js" */
+/** @typedef {HTMLInputElement | HTMLSelectElement} Control */
 
 const SEEDS = 1_000_000;
-const form = document.querySelector("#experiment");
-const { size, width, height, seed, frames } = form.elements;
-const total = document.querySelector("#run-size");
-const ORDINALS = ["first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth"];
-let pending = 0;
+const PAUSE = 250; // milliseconds without a change
+const form = find(document, "#experiment", HTMLFormElement);
+const size = find(form, "[name=size]", HTMLSelectElement);
+const [width, height, seed, frames] = [field("width"), field("height"), field("seed"), field("frames")];
+const total = find(document, "#run-size");
+/** @type {ReturnType<typeof setTimeout> | undefined} */
+let pending;
 
-/** The crop of an input as its box shows it: what is being typed may be no crop yet. */
-const cropOf = (prefix) => document.querySelector(`#${prefix.replace(".", "-")}frame`).dataset.crop ?? "";
+/** @param {string} name */
+function field(name) {
+  return find(form, `[name="${name}"]`, HTMLInputElement);
+}
 
-const chosen = () => form.elements.method.value;
-const radio = () => document.querySelector(`#method-${chosen()}`);
-const range = (prefix) => ["first", "count"].map((part) => form.elements[`${prefix}time.${part}`].value);
-const asks = (entry) => radio().classList.contains(`asks-${entry.name}`); // of those shared by moving methods
-const own = (method) => [...form.elements].filter((entry) => entry.name.startsWith(`${method}.`));
+/** The chosen method's radio button. */
+const method = () => find(form, "[name=method]:checked", HTMLInputElement);
 
-/** An input's time range as the address says it: nothing of a photograph, or where it is all of the clip. */
-function time(prefix) {
-  const block = form.elements[`${prefix}time.first`].closest(".time");
-  const said = range(prefix).join(",");
-  return block.hidden || [",", `0,${block.dataset.frames}`].includes(said) ? "" : said;
+const controls = () =>
+  [...form.elements].filter(
+    /** @returns {each is Control} */ (each) => each instanceof HTMLInputElement || each instanceof HTMLSelectElement,
+  );
+
+/**
+ * The crop of an input as its box shows it: what is being typed may be no crop yet.
+ *
+ * @param {string} prefix of the input's names
+ */
+const cropOf = (prefix) => find(document, `#${prefix.replace(".", "-")}frame`).dataset.crop ?? "";
+
+/**
+ * An input's time range as the address has it; nothing of a photograph.
+ *
+ * @param {string} prefix
+ */
+function rangeOf(prefix) {
+  const first = field(`${prefix}time.first`);
+  const block = /** @type {HTMLElement} */ (first.closest(".time"));
+  return block.hidden ? "" : timeOf(first.value, field(`${prefix}time.count`).value, block.dataset.frames ?? "");
+}
+
+/**
+ * Whether the chosen method has one of the parameters that methods for videos share.
+ *
+ * @param {Control} control
+ */
+const asks = (control) => method().classList.contains(`asks-${control.name}`);
+
+/**
+ * The parameters of a method's own.
+ *
+ * @param {string} name
+ */
+const ownOf = (name) => controls().filter((each) => each.name.startsWith(`${name}.`));
+
+/** @param {Control} control */
+function valueOf(control) {
+  if (!(control instanceof HTMLInputElement) || control.type !== "checkbox") return control.value;
+  return control.checked ? "on" : "";
 }
 
 function followCrop() {
-  const follows = "follows" in radio().dataset; // else the method itself finds how large its texture is to be
-  size.options[0].textContent = follows ? "the crop’s" : "the method’s";
-  const sides = cropOf("").split(",").slice(2);
-  const grown = sides.map((side) => Math.floor(Number(side) * Number(size.value) + 0.5));
-  if (size.value !== "free") [width.value, height.value] = follows || size.value !== "1" ? grown : ["", ""];
-  const [w, h] = [width, height].map((field, axis) => field.value || (follows && sides[axis]));
-  frames.placeholder = range("")[1];
-  const many = asks(frames) && (frames.value || frames.placeholder);
-  const long = many ? `, ${many} frames` : "";
-  const name = document.querySelector(`[for=method-${chosen()}]`).firstChild.textContent;
-  total.textContent = w && h ? `${name}, ${w} × ${h} pixels${long}` : name;
+  const follows = "follows" in method().dataset; // else the method itself finds how large its texture is to be
+  if (size.options[0]) size.options[0].textContent = follows ? "the crop’s" : "the method’s";
+  const crop = parse(cropOf(""));
+  const grow = (/** @type {number} */ side) => String(Math.floor(side * Number(size.value) + 0.5));
+  if (size.value !== "free") {
+    const known = follows || size.value !== "1" ? crop : null;
+    width.value = known ? grow(known.width) : "";
+    height.value = known ? grow(known.height) : "";
+  }
+  const wide = width.value || (follows && crop?.width);
+  const high = height.value || (follows && crop?.height);
+  frames.placeholder = field("time.count").value;
+  const count = asks(frames) ? frames.value || frames.placeholder : "";
+  const name = find(document, `[for=method-${method().value}]`).firstChild?.textContent ?? "";
+  total.textContent = wide && high ? `${name}, ${wide} × ${high} pixels${count && `, ${count} frames`}` : name;
   clearTimeout(pending);
-  pending = setTimeout(keepInAddress, 250);
+  pending = setTimeout(keepInAddress, PAUSE);
+}
+
+/** @returns {Input[]} */
+function readInputs() {
+  const inputs = [{ sample: field("sample").value, crop: cropOf(""), time: rangeOf("") }];
+  for (let number = 2; method().classList.contains(`takes-${number}`); number += 1) {
+    const prefix = `input-${number}.`;
+    const sample = find(form, `[name="${prefix}sample"]`, HTMLSelectElement).value;
+    inputs.push({ sample, crop: cropOf(prefix), time: rangeOf(prefix) });
+  }
+  return inputs;
 }
 
 function keepInAddress() {
-  const query = new URLSearchParams();
-  query.set("method", chosen());
-  query.set("crop", cropOf(""));
-  if (time("")) query.set("time", time(""));
-  for (let number = 2; radio().classList.contains(`takes-${number}`); number += 1) {
-    const prefix = `input-${number}.`;
-    const sample = form.elements[`${prefix}sample`].value;
-    const when = time(prefix) && `@${time(prefix)}`;
-    if (sample) query.set(ORDINALS[number - 1], `${sample}:${cropOf(prefix)}${when}`);
-  }
-  if (size.value !== "1") query.set("size", size.value);
-  if (size.value === "free") {
-    if (width.value) query.set("width", width.value);
-    if (height.value) query.set("height", height.value);
-  }
-  if (seed.value) query.set("seed", seed.value);
-  for (const entry of [...[...form.elements].filter(asks), ...own(chosen())]) {
-    const value = entry.type === "checkbox" ? (entry.checked ? "on" : "") : entry.value;
-    if (value !== entry.dataset.default) query.set(entry.name.split(".").at(-1), value);
-  }
-  const path = `/samples/${encodeURIComponent(form.elements.sample.value)}`;
-  const said = query.toString().replace(/%2C|%3A|%40/g, decodeURIComponent);
-  history.replaceState(history.state, "", `${path}?${said}`);
+  const name = method().value;
+  const changed = [...controls().filter(asks), ...ownOf(name)].filter((each) => valueOf(each) !== each.dataset.default);
+  const address = addressOf({
+    method: name,
+    inputs: readInputs(),
+    size: size.value,
+    width: width.value,
+    height: height.value,
+    seed: seed.value,
+    parameters: changed.map((each) => [each.name.split(".").at(-1) ?? "", valueOf(each)]),
+  });
+  history.replaceState(history.state, "", address);
 }
 
-let before = chosen();
+let before = method().value;
+
+/** What two methods both have keeps its value when one switches between them. */
 function carryOver() {
-  // What two methods both have keeps its value when one switches between them.
-  for (const old of own(before)) {
-    const same = form.elements[`${chosen()}.${old.name.slice(before.length + 1)}`];
+  const now = method().value;
+  for (const old of ownOf(before)) {
+    const same = ownOf(now).find((each) => each.name === `${now}.${old.name.slice(before.length + 1)}`);
     if (!same || same.type !== old.type) continue;
-    if (same.type === "checkbox") same.checked = old.checked;
-    else same.value = old.value;
+    if (same instanceof HTMLInputElement && old instanceof HTMLInputElement && same.type === "checkbox") {
+      same.checked = old.checked;
+    } else same.value = old.value;
   }
-  const open = document.querySelector(`#method-${before} ~ .own details`)?.open;
-  const details = document.querySelector(`#method-${chosen()} ~ .own details`);
-  if (details && open) details.open = true;
-  before = chosen();
+  const details = (/** @type {string} */ name) => seek(form, `#method-${name} ~ .own details`, HTMLDetailsElement);
+  const [shut, open] = [details(now), details(before)?.open];
+  if (shut && open) shut.open = true;
+  before = now;
 }
 
-for (const entry of [width, height]) {
-  entry.addEventListener("input", () => {
+for (const side of [width, height]) {
+  side.addEventListener("input", () => {
     size.value = "free";
   });
 }
 form.addEventListener("crop", followCrop);
 form.addEventListener("input", followCrop);
-form.addEventListener("change", (event) => {
-  if (event.target.name === "method") carryOver();
+form.addEventListener("change", ({ target }) => {
+  if (target instanceof HTMLInputElement && target.name === "method") carryOver();
   followCrop();
 });
 
-const reroll = document.querySelector("#reroll");
+const reroll = find(document, "#reroll");
 reroll.hidden = false;
 reroll.addEventListener("click", () => {
-  seed.value = crypto.getRandomValues(new Uint32Array(1))[0] % SEEDS;
+  const [random = 0] = crypto.getRandomValues(new Uint32Array(1));
+  seed.value = String(random % SEEDS);
   followCrop();
 });
 
@@ -105,6 +156,6 @@ form.addEventListener("submit", () => {
   keepInAddress();
 });
 window.addEventListener("pageshow", () => {
-  before = chosen();
+  before = method().value;
 });
 followCrop();

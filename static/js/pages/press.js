@@ -1,23 +1,30 @@
-// One press, one experiment. A form that starts one carries a key of the press, by which the service knows a second request
-// of the same press (a double click, or a press after the browser's Stop) and answers it with the same experiment. So nothing
-// needs to be locked, and no button can stay dead. What is under way is said at once, until it is there, stopped or left.
+// Idempotency of forms: one press, one experiment. A form that starts one carries a key of the press, by which the
+// service knows a second request of the same press (a double click, or a press after the browser's Stop) and answers it
+// with the same experiment. So nothing needs to be locked, and no button can stay dead. What is under way is said at
+// once, until it is there, stopped or left.
+
+import { find, findAll } from "../lib/dom.js";
 
 const BYTES = 24;
 const LONG = 10_000; // milliseconds after which a browser that does not tell of its Stop is not believed to be sending
 const live = document.querySelector("#sending");
+/** @type {HTMLElement | null} */
 let pressed = null; // the button
-let timer = 0;
+/** @type {ReturnType<typeof setTimeout> | undefined} */
+let timer;
 
-function newKey() {
+function makeKey() {
   const bytes = crypto.getRandomValues(new Uint8Array(BYTES));
   return [...bytes].map((byte) => byte.toString(16).padStart(2, "0")).join("");
 }
 
-function show() {
+/** @param {HTMLElement} button */
+function show(button) {
   clearTimeout(timer);
-  pressed.dataset.rest ??= pressed.textContent;
-  pressed.setAttribute("aria-busy", "true");
-  pressed.textContent = "Sending …";
+  pressed = button;
+  button.dataset.rest ??= button.textContent;
+  button.setAttribute("aria-busy", "true");
+  button.textContent = "Sending …";
   if (live) live.textContent = "Sending …";
 }
 
@@ -25,27 +32,34 @@ function rest(words = "") {
   clearTimeout(timer);
   if (!pressed) return;
   pressed.removeAttribute("aria-busy");
-  pressed.textContent = pressed.dataset.rest;
+  pressed.textContent = pressed.dataset.rest ?? "";
   if (live) live.textContent = words;
 }
 
 document.addEventListener("submit", (event) => {
   const form = event.target;
-  if (event.defaultPrevented || !form.matches("[data-press]")) return;
-  if (!form.elements.press) form.append(Object.assign(document.createElement("input"), { type: "hidden", name: "press", value: newKey() }));
-  pressed = event.submitter ?? form.querySelector("button.main, button");
-  show();
-  if (!("navigation" in window)) timer = setTimeout(() => rest("Still sending. Press again if you have stopped it."), LONG);
+  if (event.defaultPrevented || !(form instanceof HTMLFormElement) || !form.matches("[data-press]")) return;
+  if (!form.elements.namedItem("press")) {
+    const key = { type: "hidden", name: "press", value: makeKey() };
+    form.append(Object.assign(document.createElement("input"), key));
+  }
+  show(event.submitter ?? find(form, "button.main, button"));
+  if (!("navigation" in window)) {
+    timer = setTimeout(() => rest("Still sending. Press again if you have stopped it."), LONG);
+  }
 });
 
 // Where the browser tells of its Stop.
+/** @type {NavigateEvent | null} */
 let sent = null;
-window.navigation?.addEventListener("navigate", (event) => {
-  if (!pressed || !event.formData?.has("press")) return;
-  sent = event;
-  show();
-  event.signal.addEventListener("abort", () => sent === event && rest("Stopped."));
-});
+if ("navigation" in window) {
+  window.navigation.addEventListener("navigate", (event) => {
+    if (!pressed || !event.formData?.has("press")) return;
+    sent = event;
+    show(pressed);
+    event.signal.addEventListener("abort", () => sent === event && rest("Stopped."));
+  });
+}
 
 // Escape is Stop in every browser, but not every browser stops what a script has not seen begin.
 document.addEventListener("keydown", (event) => {
@@ -57,5 +71,5 @@ document.addEventListener("keydown", (event) => {
 // Who comes back may press again, for another experiment.
 window.addEventListener("pageshow", () => {
   rest();
-  for (const key of document.querySelectorAll("[data-press] [name=press]")) key.remove();
+  for (const key of findAll(document, "[data-press] [name=press]")) key.remove();
 });

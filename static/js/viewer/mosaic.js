@@ -1,11 +1,18 @@
-// n × n of a film that plays: what of it lies on the stage, drawn on a canvas at every new frame.
+// Tiles of a video that plays, n × n of it: what of them lies on the stage, drawn on a canvas at every new frame.
+
+/** @import { Size } from "./geometry.js" */
 
 export class Mosaic {
+  canvas = document.createElement("canvas");
+  context = this.canvas.getContext("2d");
+  /** @type {number[]} */
+  columns = [];
+  /** @type {number[]} */
+  rows = [];
+
+  /** @param {HTMLVideoElement} video */
   constructor(video) {
     this.video = video;
-    this.canvas = document.createElement("canvas");
-    this.context = this.canvas.getContext("2d");
-    this.columns = this.rows = [];
     const next = () => {
       this.paint();
       video.requestVideoFrameCallback(next);
@@ -15,26 +22,44 @@ export class Mosaic {
     for (const name of ["loadeddata", "seeked"]) video.addEventListener(name, () => this.paint());
   }
 
-  /** Place n × n films of `wide` × `high` screen pixels, from (left, top) of the box on; `smooth` if they are reduced. */
+  /**
+   * Place n × n videos of `wide` × `high` screen pixels, from (left, top) of a box on.
+   *
+   * @param {Size} box
+   * @param {number} left
+   * @param {number} top
+   * @param {number} wide
+   * @param {number} high
+   * @param {number} tiles n
+   * @param {boolean} smooth where they are reduced
+   */
   place(box, left, top, wide, high, tiles, smooth) {
     // Every tile begins at a whole pixel of the screen, where the one before it ends.
-    const edges = (start, side) => Array.from({ length: tiles + 1 }, (_, index) => Math.round((start + index * side) * devicePixelRatio));
-    this.columns = edges(left, wide);
-    this.rows = edges(top, high);
+    const edge = (/** @type {number} */ place) => Math.round(place * devicePixelRatio);
+    const numbers = [...Array(tiles + 1).keys()];
+    this.columns = numbers.map((index) => edge(left + index * wide));
+    this.rows = numbers.map((index) => edge(top + index * high));
     this.canvas.width = Math.round(box.width * devicePixelRatio);
     this.canvas.height = Math.round(box.height * devicePixelRatio);
-    this.context.imageSmoothingEnabled = smooth;
+    if (this.context) this.context.imageSmoothingEnabled = smooth;
     this.paint();
   }
 
   paint() {
     if (this.canvas.hidden || this.video.readyState < HTMLMediaElement.HAVE_CURRENT_DATA) return;
-    const { context, columns, rows, video } = this;
-    for (let row = 0; row + 1 < rows.length; row += 1) {
-      for (let column = 0; column + 1 < columns.length; column += 1) {
-        const [x, y] = [columns[column], rows[row]];
-        context.drawImage(video, x, y, columns[column + 1] - x, rows[row + 1] - y);
+    for (const [top, bottom] of pairs(this.rows)) {
+      for (const [left, right] of pairs(this.columns)) {
+        this.context?.drawImage(this.video, left, top, right - left, bottom - top);
       }
     }
   }
+}
+
+/**
+ * Each number with the one after it.
+ *
+ * @param {number[]} edges
+ */
+function pairs(edges) {
+  return edges.slice(1).map((edge, index) => /** @type {[number, number]} */ ([edges[index], edge]));
 }

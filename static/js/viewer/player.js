@@ -1,34 +1,43 @@
-// Films in step: one clock, in frames, for all of them. Each loops by itself; those ahead wait for the slowest.
+// Playback of videos in step: one clock, in frames, for all of them. Each loops by itself; those ahead wait for the
+// slowest.
 
+import { find, findAll } from "../lib/dom.js";
+import { observe } from "../lib/lifetime.js";
 import { LoopingVideo } from "./looping_video.js";
+import { pace } from "./pacing.js";
 
-const [AHEAD, FAR] = [0.5, 2]; // frames
-const SLOWED = 0.8; // speed of a film that is a little ahead
 const KEYS = "Space plays and pauses, comma and full stop step by a frame.";
 
 export class Player {
-  /** `root` is a viewer that holds videos and a `.player` with the controls. */
-  constructor(root) {
+  wanted = false;
+  seen = true;
+  ticking = 0;
+  shown = 0; // number of the frame that is on the screen
+
+  /**
+   * @param {HTMLElement} root a viewer that holds videos and a `.player` with the controls
+   * @param {AbortSignal} signal
+   */
+  constructor(root, signal) {
     this.root = root;
-    this.bar = root.querySelector(".player");
-    this.scrubber = this.bar.querySelector("input");
-    this.panes = root.querySelector(".panes");
-    this.films = [...root.querySelectorAll("video")].map((video) => new LoopingVideo(video));
-    this.clock = this.films.at(-1);
-    this.wanted = false;
-    this.seen = true;
-    this.ticking = 0;
+    this.bar = find(root, ".player");
+    this.scrubber = find(this.bar, "input", HTMLInputElement);
+    this.panes = find(root, ".panes");
+    this.videos = findAll(root, "video", HTMLVideoElement).map((video) => new LoopingVideo(video));
+    this.clock = /** @type {LoopingVideo} */ (this.videos.at(-1));
     this.panes.setAttribute("aria-label", `${this.panes.getAttribute("aria-label") ?? ""} ${KEYS}`.trim());
     this.listen();
+    this.follow(signal);
     this.show();
     const calm = matchMedia("(prefers-reduced-motion: reduce)");
-    calm.addEventListener("change", () => calm.matches && this.pause());
+    calm.addEventListener("change", () => calm.matches && this.pause(), { signal });
     if (!calm.matches) this.play();
   }
 
   listen() {
     this.bar.addEventListener("click", ({ target }) => {
-      const { step, play } = target.closest("button")?.dataset ?? {};
+      const button = target instanceof Element ? target.closest("button") : null;
+      const { step, play } = button?.dataset ?? {};
       if (step) this.step(Number(step));
       else if (play !== undefined) this.toggle();
     });
@@ -37,33 +46,49 @@ export class Player {
       if (event.ctrlKey || event.altKey || event.metaKey || this.bar.hidden) return;
       if (event.key === ",") this.step(-1);
       else if (event.key === ".") this.step(1);
-      else if (event.key === " " && [this.panes, this.scrubber].includes(event.target)) this.toggle();
+      else if (event.key === " " && (event.target === this.panes || event.target === this.scrubber)) this.toggle();
       else return;
       event.preventDefault();
     });
-    new IntersectionObserver(([entry]) => {
-      this.seen = entry.isIntersecting;
+  }
+
+  /**
+   * Follow whether the videos are seen, and whether they can be played.
+   *
+   * @param {AbortSignal} signal
+   */
+  follow(signal) {
+    const notice = (/** @type {IntersectionObserverEntry[]} */ [entry]) => {
+      this.seen = entry?.isIntersecting ?? this.seen;
       this.run();
-    }).observe(this.panes);
-    // What plays on in the background is not counted; videos that cannot be played keep no others waiting.
-    document.addEventListener("visibilitychange", () => !document.hidden && this.running && this.place(this.position));
-    for (const film of this.films) {
-      film.video.addEventListener("error", () => this.leave(film));
-      film.video.lastElementChild.addEventListener("error", () => this.leave(film));
+    };
+    observe(new IntersectionObserver(notice), this.panes, signal);
+    // What plays on in the background is not counted.
+    const comeBack = () => !document.hidden && this.running && this.place(this.position);
+    document.addEventListener("visibilitychange", comeBack, { signal });
+    signal.addEventListener("abort", () => cancelAnimationFrame(this.ticking), { once: true });
+    for (const each of this.videos) {
+      each.video.addEventListener("error", () => this.leave(each));
+      each.video.lastElementChild?.addEventListener("error", () => this.leave(each));
     }
   }
 
-  leave(film) {
-    this.films = this.films.filter((other) => other !== film);
-    this.clock = this.films.at(-1) ?? this.clock;
-    this.root.querySelector(".unplayable").hidden = false;
+  /**
+   * Go on without a video that cannot be played, which keeps no others waiting.
+   *
+   * @param {LoopingVideo} video
+   */
+  leave(video) {
+    this.videos = this.videos.filter((other) => other !== video);
+    this.clock = this.videos.at(-1) ?? this.clock;
+    find(this.root, ".unplayable").hidden = false;
   }
 
   get running() {
     return this.wanted && this.seen;
   }
 
-  /** The whole frames that the clock's film has shown. */
+  /** The whole frames that the clock's video has shown. */
   get position() {
     return Math.floor(this.clock.position);
   }
@@ -84,41 +109,49 @@ export class Player {
     this.place(this.position);
   }
 
+  /** @param {number} by frames */
   step(by) {
     this.go(this.position + by);
   }
 
-  /** Stand still at a position. */
+  /**
+   * Stand still at a position.
+   *
+   * @param {number} position
+   */
   go(position) {
     this.wanted = false;
     this.run();
     this.place(position);
   }
 
+  /** @param {number} position */
   place(position) {
-    for (const film of this.films) film.go(position);
+    for (const video of this.videos) video.go(position);
     this.show();
   }
 
   /** Let the videos play, or not, as is wanted. */
   run() {
     cancelAnimationFrame(this.ticking);
-    for (const { video } of this.films) {
+    for (const { video } of this.videos) {
       if (!this.running) video.pause();
-      else video.play().catch((error) => error.name === "NotAllowedError" && this.pause());
+      else {
+        video.play().catch((error) => {
+          if (error instanceof DOMException && error.name === "NotAllowedError") this.pause();
+        });
+      }
     }
     if (this.running) this.tick();
     this.bar.classList.toggle("playing", this.wanted);
-    this.bar.querySelector("[data-play]").setAttribute("aria-label", this.wanted ? "Pause" : "Play");
+    find(this.bar, "[data-play]").setAttribute("aria-label", this.wanted ? "Pause" : "Play");
   }
 
   tick() {
-    const positions = this.films.map((film) => film.position);
-    const slowest = Math.min(...positions);
-    this.films.forEach((film, index) => {
-      const ahead = positions[index] - slowest;
-      film.pace(ahead > FAR ? 0 : ahead > AHEAD ? this.clock.rate * SLOWED : this.clock.rate);
-    });
+    const { rate } = this.clock;
+    const positions = this.videos.map((video) => video.position);
+    const paces = pace(positions, rate);
+    this.videos.forEach((video, index) => video.pace(paces[index] ?? rate));
     this.show();
     this.ticking = requestAnimationFrame(() => this.tick());
   }
@@ -127,8 +160,8 @@ export class Player {
     const number = this.clock.frame(this.position) + 1;
     if (this.shown === number) return;
     this.shown = number;
-    this.scrubber.value = number;
+    this.scrubber.value = String(number);
     this.scrubber.setAttribute("aria-valuetext", `${number} of ${this.clock.count}`);
-    this.bar.querySelector("output").textContent = `${number} / ${this.clock.count}`;
+    find(this.bar, "output").textContent = `${number} / ${this.clock.count}`;
   }
 }
