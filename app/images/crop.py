@@ -1,4 +1,4 @@
-"""Parts of a sample: a rectangle in pixels of the upright original, and a range of a video's frames."""
+"""Crops of a sample: a rectangle in pixels of the upright original, and a range of a video's frames."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ from app.synthesis.structure import CENTRE
 
 @dataclass(frozen=True)
 class Rectangle:
-    """``x`` to the right and ``y`` down from the top left corner; ``width`` and ``height`` in pixels."""
+    """A rectangle: ``x`` to the right and ``y`` down from the top left corner, ``width`` and ``height``; in pixels."""
 
     x: int
     y: int
@@ -39,7 +39,7 @@ class Rectangle:
         return cls(x, y, width, height)
 
     def check_within(self, width: int, height: int) -> "Rectangle":
-        """Itself, if it lies in a picture of this size.
+        """Return the rectangle itself if it lies in a picture of this size.
 
         Raises
         ------
@@ -48,7 +48,7 @@ class Rectangle:
         """
         if self.width < 1 or self.height < 1:
             raise InvalidInputError(
-                "A crop is at least 1 × 1 pixel: draw it again, or give a width and a height.", "crop"
+                "A crop has at least 1 × 1 pixel: draw it again, or enter a width and a height.", "crop"
             )
         if self.x < 0 or self.y < 0 or self.x + self.width > width or self.y + self.height > height:
             raise InvalidInputError(
@@ -59,7 +59,7 @@ class Rectangle:
         return self
 
     def scale_size(self, factor: float) -> tuple[int, int]:
-        """Width and height of a texture ``factor`` times as large; half a pixel is rounded up.
+        """Multiply width and height by ``factor``; half a pixel is rounded up, and no side is less than 1.
 
         Examples
         --------
@@ -74,7 +74,7 @@ class Rectangle:
 
 @dataclass(frozen=True)
 class Frames:
-    """A range of a video's frames: ``first`` counts from 0; a still picture has one."""
+    """A range of a video's frames: ``first`` counts from 0; a still picture has one frame."""
 
     first: int = 0
     count: int = 1
@@ -102,7 +102,7 @@ class Frames:
         return cls(first, count)
 
     def check_within(self, frames: int) -> "Frames":
-        """Itself, if it lies in a sample of so many frames.
+        """Return the range itself if it lies in a sample of so many frames.
 
         Raises
         ------
@@ -110,7 +110,7 @@ class Frames:
             If it is empty or reaches outside.
         """
         if self.count < 1:
-            raise InvalidInputError("A time range has at least 1 frame: give the number of frames.", "frames")
+            raise InvalidInputError("A time range has at least 1 frame: enter the number of frames.", "frames")
         if self.first < 0 or self.first + self.count > frames:
             raise InvalidInputError(
                 f"The time range {self} reaches outside the sample, which has {frames} "

@@ -1,4 +1,4 @@
-"""An uploaded file's pixels, of a picture or a video: upright, in sRGB, at full depth, without metadata."""
+"""Decoding of uploads, pictures and videos, to pixels: upright, in sRGB, at full depth, without metadata."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -36,9 +36,24 @@ OTHERS = {
 
 @dataclass(frozen=True)
 class Limits:
-    """What one upload may cost: bytes of the file, pixels of a picture, seconds and bytes of memory to decode it.
+    """Limits of one upload.
 
-    Of a video also frames, seconds that it plays, and pixels of all frames together.
+    Attributes
+    ----------
+    bytes : int
+        Of the file.
+    pixels : int
+        Of a picture, or of a video's frame.
+    seconds : float
+        To decode it.
+    memory : int
+        Bytes to decode it.
+    video_frames : int
+        Number of frames.
+    video_seconds : float
+        For which a video plays.
+    video_pixels : int
+        Of all frames of a video together.
     """
 
     bytes: int = 32 * MEBIBYTE
@@ -51,7 +66,7 @@ class Limits:
 
     @classmethod
     def from_settings(cls, settings: "Settings") -> "Limits":
-        """What the settings allow."""
+        """Take the limits from the service's settings."""
         return cls(
             bytes=settings.max_upload_bytes,
             pixels=settings.max_upload_pixels,
@@ -64,7 +79,7 @@ class Limits:
 
     @property
     def clip(self) -> ClipLimits:
-        """Those of a video."""
+        """The limits of a video alone."""
         return ClipLimits(self.video_frames, self.video_seconds, self.video_pixels)
 
 
@@ -85,7 +100,16 @@ class Decoded(Media):
 
 
 def decode(path: Path, limits: Limits) -> Decoded:
-    """Read an uploaded file as a whole.
+    """Decode an uploaded file as a whole.
+
+    Parameters
+    ----------
+    path : Path
+    limits : Limits
+
+    Returns
+    -------
+    Decoded
 
     Raises
     ------
@@ -104,14 +128,26 @@ def decode(path: Path, limits: Limits) -> Decoded:
 
 
 def read(path: Path, limits: Limits) -> Decoded | Clip:
-    """Read an uploaded picture, or begin to read a video. The format is told by content, never by name.
+    """Decode an uploaded picture, or begin to decode a video.
 
-    Nothing here bounds time or memory: `app.images.intake.client` runs it in a process that does.
+    The format is recognised by the content, never by the name. Nothing here limits time or memory:
+    `app.images.intake.client` runs it in a process that does.
+
+    Parameters
+    ----------
+    path : Path
+    limits : Limits
+
+    Returns
+    -------
+    Decoded or Clip
+        A still picture, or a video or animation whose frames are decoded while they are taken; taking them raises the
+        same errors.
 
     Raises
     ------
     UnsupportedFormatError
-        If it is none of the formats that are read.
+        If the file has none of the formats that are read.
     BrokenFileError
         If it is empty, truncated, damaged or lies about its size.
     TooLargeError
@@ -125,40 +161,40 @@ def read(path: Path, limits: Limits) -> Decoded | Clip:
         )
     data = path.read_bytes()
     if not data:
-        raise BrokenFileError("The file is empty: choose it again and upload it once more.")
-    with _telling():
+        raise BrokenFileError("The file is empty: choose it again, and upload it once more.")
+    with _translate_errors():
         if container := identify_container(data):
             clip = video.decode(data, container, limits.pixels, limits.clip)
         elif animation.is_animation(data):
             clip = animation.decode(data, limits.pixels, limits.clip)
         else:
-            raw = _reader(data)(data, limits.pixels)
+            raw = _choose_decoder(data)(data, limits.pixels)
             pixels = turn_upright(to_srgb(raw.pixels, raw.profile), raw.orientation)
             alpha = None if raw.alpha is None or is_opaque(raw.alpha) else turn_upright(raw.alpha, raw.orientation)
             return Decoded.still(pixels, alpha)
-    return replace(clip, frames=_told(clip.frames))
+    return replace(clip, frames=_translate_frame_errors(clip.frames))
 
 
-def _told(frames: Iterator[TimedFrame]) -> Iterator[TimedFrame]:
-    with _telling():
+def _translate_frame_errors(frames: Iterator[TimedFrame]) -> Iterator[TimedFrame]:
+    with _translate_errors():
         yield from frames
 
 
 @contextmanager
-def _telling() -> Iterator[None]:
+def _translate_errors() -> Iterator[None]:
     try:
         yield
     except (UnsupportedFormatError, BrokenFileError, TooLargeError, MemoryError):
         raise
     except Exception as error:
-        # The libraries raise dozens of kinds on broken input, IndexError and struct.error among them.
+        # On broken input the libraries raise dozens of kinds, IndexError and struct.error among them.
         raise BrokenFileError(
             "This file cannot be decoded; it is damaged or incomplete. "
             "Open it in the program that made it, save it again and upload the new file."
         ) from error
 
 
-def _reader(data: bytes) -> Callable[[bytes, int], Raw]:
+def _choose_decoder(data: bytes) -> Callable[[bytes, int], Raw]:
     if data.startswith(SIGNATURE):
         return png.decode
     if data.startswith(b"\xff\xd8\xff"):
@@ -173,4 +209,4 @@ def _reader(data: bytes) -> Callable[[bytes, int], Raw]:
     elif data[8:12] == b"AVI ":
         kind = "an AVI video"
     found = f"This file is {kind}, which is" if kind else "This file is"
-    raise UnsupportedFormatError(f"{found} not of a format that can be read: {FORMATS} work. Save it as one of these.")
+    raise UnsupportedFormatError(f"{found} not in a format that can be read. Save it as one of these: {FORMATS}.")

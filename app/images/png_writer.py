@@ -1,12 +1,12 @@
-"""PNG files written fast: strips are filtered and deflated on their own, in any order, from any thread, then joined.
+"""PNG encoder: strips are filtered and deflated on their own, in any order, from any thread, then joined.
 
-Every strip is a sequence of whole deflate blocks that ends on a byte border and refers to nothing outside itself, so
-the strips one after the other are one deflate stream. Its rows carry the PNG filter Average, but the first one, which
-cannot see the row above, carries Sub. On noise-like pictures that is as small as trying every filter, at a fraction of
-the cost.
+Every strip is a sequence of whole deflate blocks that ends on a byte boundary and refers to nothing outside itself, so
+that the strips, one after the other, are one deflate stream. Its rows have the PNG filter Average; the first one, which
+cannot see the row above, has Sub. On noise-like pictures the file is as small as with the best filter for each row, at
+a fraction of the cost.
 
-A private chunk, ``stRP``, lists rows, compressed bytes and Adler-32 of every strip, so that `app.images.read` can cut a
-crop out of a large picture without decoding all of it.
+A private chunk, ``stRP``, lists the rows, the compressed bytes and the Adler-32 of every strip. With it
+`app.images.read` cuts a crop out of a large picture without decoding all of it.
 """
 
 import struct
@@ -31,8 +31,8 @@ SUB, AVERAGE = 1, 3
 RAW_DEFLATE = -15
 LEVEL = 1
 ADLER_BASE = 65521
-BAND_BYTES = 1 << 18  # what is filtered at once stays in the cache between its passes
-STRIP_BYTES = 1 << 20  # what `encode_png` gives to one thread
+BAND_BYTES = 1 << 18  # filtered at once: they stay in the cache between the passes
+STRIP_BYTES = 1 << 20  # of pixels that `encode_png` hands to one thread
 
 
 class _Strip(NamedTuple):
@@ -43,14 +43,14 @@ class _Strip(NamedTuple):
 
 
 class PngWriter:
-    """A PNG file that is written in strips, tagged as sRGB.
+    """A writer of one PNG file, strip by strip, tagged as sRGB.
 
     Parameters
     ----------
     width : int
         In pixels, at least 1.
     height : int or None
-        At least 1; None: as many rows as will be written.
+        In pixels, at least 1; None: as many rows as will be written.
     channels : int
         1 grey, 2 grey and alpha, 3 RGB, 4 RGB and alpha.
     depth : int
@@ -59,7 +59,7 @@ class PngWriter:
     Raises
     ------
     ValueError
-        If the size, the channels or the depth is none of these.
+        If the size, the number of channels or the depth is none of these.
 
     Notes
     -----
@@ -76,7 +76,9 @@ class PngWriter:
 
     def __init__(self, width: int, height: int | None, channels: int, depth: int) -> None:
         if width < 1 or (height is not None and height < 1) or channels not in COLOUR_TYPES or depth not in DTYPES:
-            raise ValueError(f"no PNG of {width} × {height} pixels with {channels} channels of {depth} bits")
+            raise ValueError(
+                f"cannot write a PNG of {width} × {height} pixels with {channels} channels of {depth} bits"
+            )
         self.width, self.height, self.channels, self.depth = width, height, channels, depth
         self._strips: dict[int, _Strip] = {}
         self._lock = Lock()
@@ -89,19 +91,20 @@ class PngWriter:
         y : int
             The block's first row in the picture.
         block : ndarray, shape (n, W, C), or (n, W) with one channel
-            uint8 for 8 bits, uint16 for 16. It is not kept: the caller may use its memory again.
+            uint8 for 8 bits, uint16 for 16. It is not kept: the caller may reuse its memory.
 
         Raises
         ------
         ValueError
-            If the block's shape or type is not the picture's, or it reaches outside.
+            If the block's shape or type is not the picture's, if it reaches outside, or if its first row was written
+            before.
         """
         rows = len(block)
         if block.dtype != DTYPES[self.depth] or block.size != rows * self.width * self.channels:
-            raise ValueError(f"a block of shape {block.shape} and type {block.dtype} is not of this picture")
+            raise ValueError(f"the block of shape {block.shape} and type {block.dtype} does not fit this picture")
         if rows < 1 or y < 0 or (self.height is not None and y + rows > self.height):
-            raise ValueError(f"rows {y} to {y + rows} are not in a picture of {self.height} rows")
-        strip = _strip(block, self.channels * self.depth // 8)
+            raise ValueError(f"rows {y} to {y + rows} lie outside a picture of {self.height} rows")
+        strip = _compress(block, self.channels * self.depth // 8)
         with self._lock:
             if y in self._strips:
                 raise ValueError(f"row {y} was written twice")
@@ -113,33 +116,33 @@ class PngWriter:
         Raises
         ------
         ValueError
-            If a row was not written, or written twice.
+            If a row is missing or was written twice.
         """
-        return b"".join(self._pieces())
+        return b"".join(self._collect_pieces())
 
     def save(self, path: Path) -> None:
-        """Write the file, of which a large one would not fit into memory twice.
+        """Write the file to ``path``; `finish` would hold a large one in memory twice.
 
         Raises
         ------
         ValueError
             As `finish`.
         """
-        pieces = self._pieces()
+        pieces = self._collect_pieces()
         with path.open("wb") as file:
             file.writelines(pieces)
 
-    def _pieces(self) -> list[bytes]:
+    def _collect_pieces(self) -> list[bytes]:
         with self._lock:
             strips = sorted(self._strips.items())
         below, adler, length = 0, 1, self.width * self.channels * self.depth // 8 + 1
         for y, strip in strips:
             if y != below:
-                raise ValueError(f"row {min(y, below)} was written {'twice' if y < below else 'never'}")
+                raise ValueError(f"row {y} was written twice" if y < below else f"row {below} is missing")
             below = y + strip.rows
             adler = combine_adler32(adler, strip.adler, strip.rows * length)
         if below != self.height and (self.height is not None or below == 0):
-            raise ValueError(f"row {below} was written never")
+            raise ValueError(f"row {below} is missing")
         header = HEADER.pack(self.width, below, self.depth, COLOUR_TYPES[self.channels], 0, 0, 0)
         table = b"".join(STRIP_ENTRY.pack(strip.rows, strip.size, strip.adler) for _, strip in strips)
         pieces = [
@@ -155,14 +158,14 @@ class PngWriter:
 
 
 def encode_png(array: Pixels, threads: int = 1) -> bytes:
-    """Write a whole picture as PNG.
+    """Encode a whole picture as PNG.
 
     Parameters
     ----------
     array : ndarray, shape (H, W) or (H, W, C)
         uint8 or uint16; C is 1 (grey), 2 (grey and alpha), 3 (RGB) or 4 (RGB and alpha).
     threads : int, optional
-        How many threads compress; the file's bytes do not depend on it.
+        Threads that compress; the file's bytes do not depend on their number.
 
     Returns
     -------
@@ -172,10 +175,10 @@ def encode_png(array: Pixels, threads: int = 1) -> bytes:
     Raises
     ------
     ValueError
-        If the shape or the type is none of these.
+        If the shape or the type is none of these, or a side is 0.
     """
     if array.ndim not in (2, 3) or array.dtype not in DTYPES.values():
-        raise ValueError(f"no PNG of an array of shape {array.shape} and type {array.dtype}")
+        raise ValueError(f"cannot write a PNG of an array of shape {array.shape} and type {array.dtype}")
     height, width = array.shape[:2]
     channels = array.shape[2] if array.ndim == 3 else 1
     writer = PngWriter(width, height, channels, array.itemsize * 8)
@@ -187,7 +190,18 @@ def encode_png(array: Pixels, threads: int = 1) -> bytes:
 
 
 def combine_adler32(first: int, second: int, length: int) -> int:
-    """Adler-32 of two byte strings joined, from the checksum of each and the second one's length.
+    """Combine the Adler-32 checksums of two byte strings to that of the joined one (RFC 1950).
+
+    Parameters
+    ----------
+    first, second : int
+        Checksums.
+    length : int
+        Bytes of the second string.
+
+    Returns
+    -------
+    int
 
     Examples
     --------
@@ -200,7 +214,7 @@ def combine_adler32(first: int, second: int, length: int) -> int:
 
 
 def make_chunk(name: bytes, *parts: bytes) -> list[bytes]:
-    """Frame a PNG chunk's content, given in parts; joined, the pieces are the chunk."""
+    """Make a PNG chunk of content in parts: pieces that joined are length, name, content and CRC-32."""
     checksum = isal_zlib.crc32(name)
     for part in parts:
         checksum = isal_zlib.crc32(part, checksum)
@@ -215,7 +229,7 @@ def make_last_data(adler: int) -> list[bytes]:
     return make_chunk(b"IDAT", b"\x03\x00", adler.to_bytes(4, "big"))
 
 
-def _strip(block: Pixels, pixel: int) -> _Strip:
+def _compress(block: Pixels, pixel: int) -> _Strip:
     """Filter and deflate a block whose pixels have ``pixel`` bytes."""
     big_endian = np.ascontiguousarray(block, block.dtype.newbyteorder(">"))
     raw = big_endian.view(np.uint8).reshape(len(block), -1)
@@ -224,14 +238,14 @@ def _strip(block: Pixels, pixel: int) -> _Strip:
     parts: list[bytes] = []
     adler = 1
     for y in range(0, len(raw), rows):
-        filtered = _filtered(raw, y, min(y + rows, len(raw)), pixel)
+        filtered = _filter(raw, y, min(y + rows, len(raw)), pixel)
         parts.append(compressor.compress(filtered))
         adler = isal_zlib.adler32(filtered, adler)
     parts.append(compressor.flush(isal_zlib.Z_SYNC_FLUSH))
     return _Strip(len(raw), make_chunk(b"IDAT", *parts), sum(map(len, parts)), adler)
 
 
-def _filtered(raw: NDArray[np.uint8], start: int, stop: int, pixel: int) -> NDArray[np.uint8]:
+def _filter(raw: NDArray[np.uint8], start: int, stop: int, pixel: int) -> NDArray[np.uint8]:
     """Rows ``start`` to ``stop`` with their filter bytes, shape (stop − start, bytes of a row + 1)."""
     out = np.empty((stop - start, raw.shape[1] + 1), np.uint8)
     out[:, 0] = AVERAGE

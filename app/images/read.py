@@ -1,4 +1,4 @@
-"""Reading a crop of a stored picture: only the strips that hold it are read and decoded."""
+"""Crop reader: cuts a rectangle out of a stored PNG file, and decodes only the strips that hold it."""
 
 from pathlib import Path
 from typing import BinaryIO
@@ -23,8 +23,8 @@ from app.images.png_writer import (
     make_last_data,
 )
 
-FRAME = 12  # bytes of a chunk around its content: length, name, checksum
-BEFORE_TABLE = len(SIGNATURE) + FRAME + HEADER.size + FRAME + 1  # IHDR and sRGB
+OVERHEAD = 12  # bytes of a chunk around its content: length, name, checksum
+BEFORE_TABLE = len(SIGNATURE) + OVERHEAD + HEADER.size + OVERHEAD + 1  # IHDR and sRGB
 CHANNELS = {colour: channels for channels, colour in COLOUR_TYPES.items()}
 
 
@@ -34,13 +34,13 @@ def read_crop(path: Path, rectangle: Rectangle) -> NDArray[np.float32]:
     Parameters
     ----------
     path : Path
-        A PNG file; one by `app.images.png_writer` is read in time proportional to the crop.
+        A PNG file; one that `app.images.png_writer` wrote is read in time proportional to the crop's rows.
     rectangle : Rectangle
 
     Returns
     -------
     ndarray, shape (H, W, C)
-        float32, 0 to 255 or 0 to 65535 as the file's depth says; C is 1 or 3.
+        float32, 0 to 255 or 0 to 65535 by the file's depth; C is 1 or 3.
 
     Raises
     ------
@@ -51,7 +51,7 @@ def read_crop(path: Path, rectangle: Rectangle) -> NDArray[np.float32]:
 
 
 def read_opaque(path: Path, rectangle: Rectangle) -> Pixels:
-    """Cut a rectangle's colours out as the whole numbers that are stored; raises as `read_crop` does."""
+    """Cut the colours of a rectangle out as they are stored, (H, W, C) uint8 or uint16; raise as `read_crop` does."""
     colour, alpha = read_rectangle(path, rectangle)
     if alpha is not None and not is_opaque(alpha):
         raise InvalidInputError(
@@ -69,7 +69,7 @@ def has_transparency(path: Path, rectangle: Rectangle) -> bool:
 
 
 def read_rectangle(path: Path, rectangle: Rectangle) -> tuple[Pixels, Pixels | None]:
-    """Cut a rectangle out of a stored picture, as it is: its colours (H, W, C) and its alpha (H, W), if it has any.
+    """Cut a rectangle out of a stored picture: its colours (H, W, C) and its alpha (H, W), or None if it has none.
 
     Raises
     ------
@@ -84,7 +84,7 @@ def read_rectangle(path: Path, rectangle: Rectangle) -> tuple[Pixels, Pixels | N
         if name == STRIP_TABLE:
             table = list(STRIP_ENTRY.iter_unpack(file.read(length)))
             file.read(4 + sum(map(len, FIRST_DATA)))
-            png, first = _strips(file, table, area, (width, depth, colour))
+            png, first = _read_strips(file, table, area, (width, depth, colour))
         else:
             png, first = path.read_bytes(), 0
     array = imagecodecs.png_decode(png)
@@ -92,7 +92,7 @@ def read_rectangle(path: Path, rectangle: Rectangle) -> tuple[Pixels, Pixels | N
     return split_alpha(array[top : top + area.height, area.x : area.x + area.width])
 
 
-def _strips(
+def _read_strips(
     file: BinaryIO, table: list[tuple[int, int, int]], area: Rectangle, kind: tuple[int, int, int]
 ) -> tuple[bytes, int]:
     """Build a PNG file of the strips that hold an area, the file standing at the first; also return its first row."""
@@ -102,10 +102,10 @@ def _strips(
     adler = 1
     for rows, size, checksum in table:
         if below + rows <= area.y:
-            skipped += FRAME + size
+            skipped += OVERHEAD + size
             first = below + rows
         elif below < area.y + area.height:
-            taken += FRAME + size
+            taken += OVERHEAD + size
             adler = combine_adler32(adler, checksum, rows * row_bytes)
         else:
             break

@@ -107,7 +107,7 @@ def test_transparency_is_kept_where_the_format_has_it(noise: Noise) -> None:
 
 @pytest.mark.parametrize(("file_format", "side"), [("webp", 16_384), ("jpeg", 65_501)])
 def test_a_format_that_is_too_small_says_so(file_format: Format, side: int) -> None:
-    with pytest.raises(InvalidInputError, match="take PNG or TIFF"):
+    with pytest.raises(InvalidInputError, match="Choose PNG or TIFF"):
         convert(encode_png(np.zeros((1, side), np.uint8)), file_format)
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageOps
 
 from app.images.decode import Decoded
-from app.images.intake.store import to_png
+from app.images.intake.store import encode_picture
 
 Read = Callable[..., Decoded]
 Noise = Callable[..., NDArray[Any]]
@@ -176,6 +176,6 @@ def test_an_impossible_orientation_is_ignored(read: Read, photograph: NDArray[np
 def test_what_is_written_is_what_was_decoded(read: Read, noise: Noise) -> None:
     for channels, dtype in ((1, np.uint8), (2, np.uint16), (3, np.uint16), (4, np.uint8)):
         picture = read(imagecodecs.png_encode(noise(70, 50, channels, dtype=dtype)))
-        again = read(to_png(picture))
+        again = read(encode_picture(picture))
         np.testing.assert_array_equal(again.pixels, picture.pixels)
         np.testing.assert_array_equal(again.alpha, picture.alpha)

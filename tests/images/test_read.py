@@ -14,7 +14,7 @@ from PIL import Image
 from app.errors import InvalidInputError
 from app.images.crop import Rectangle
 from app.images.decode import Decoded
-from app.images.intake.store import to_png
+from app.images.intake.store import encode_picture
 from app.images.png_writer import PngWriter, encode_png
 from app.images.read import has_transparency, read_crop
 
@@ -47,7 +47,7 @@ def test_a_crop_is_what_it_is_in_the_whole_picture(strips: tuple[Path, NDArray[A
 @pytest.mark.parametrize(("channels", "dtype"), [(1, np.uint8), (3, np.uint8), (1, np.uint16), (3, np.uint16)])
 def test_every_kind_of_stored_picture_is_read(tmp_path: Path, noise: Noise, channels: int, dtype: type) -> None:
     pixels = noise(200, 1000, channels, dtype=dtype)
-    (tmp_path / "picture.png").write_bytes(to_png(Decoded.still(pixels, None)))
+    (tmp_path / "picture.png").write_bytes(encode_picture(Decoded.still(pixels, None)))
     crop = read_crop(tmp_path / "picture.png", Rectangle(3, 130, 990, 40))
     np.testing.assert_array_equal(crop, pixels[130:170, 3:993])
 
@@ -61,7 +61,7 @@ def test_a_png_by_others_is_read_too(tmp_path: Path, noise: Noise) -> None:
 
 def test_of_a_large_picture_only_the_strips_of_the_crop_are_read(tmp_path: Path, noise: Noise) -> None:
     pixels = noise(640, 2000, 3)
-    data = bytearray(to_png(Decoded.still(pixels, None)))
+    data = bytearray(encode_picture(Decoded.still(pixels, None)))
     middle = len(data) // 2
     data[middle:] = bytes(len(data) - middle)
     (tmp_path / "picture.png").write_bytes(data)

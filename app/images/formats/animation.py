@@ -1,8 +1,9 @@
-"""Animations: GIF, WebP and PNG. A file is gone through once for its times and colours, and again for its frames.
+"""Animations: GIF, animated WebP and animated PNG (APNG).
 
-A frame that is shown k times as long as the shortest is repeated k times (unless that would be too many frames), so
-that the timing is kept at one rate. As in browsers, ten milliseconds or less count as a tenth of a second. Colour and
-transparency follow the still pictures of the same format; a GIF is grey if every pixel is.
+A first pass through the file finds durations and colours, a second one yields the frames. A frame that is shown k times
+as long as the shortest is repeated k times (unless that would be too many frames), so that one frame rate keeps the
+timing. As in browsers, a duration of ten milliseconds or less counts as a tenth of a second. Colour and transparency
+follow the still pictures of the same format; a GIF is grey if every pixel is.
 """
 
 import io
@@ -21,15 +22,15 @@ from app.images.formats.still import DAMAGED, check_size, is_opaque, read_orient
 from app.images.png_writer import HEADER, SIGNATURE
 
 MEDIA_TYPES = {"GIF": "image/gif", "PNG": "image/apng", "WEBP": "image/webp"}
-HASTE, USUAL = 10.0, 100.0  # milliseconds
+TOO_SHORT, DEFAULT_DURATION = 10.0, 100.0  # milliseconds
 TRAILER = b";"
 ANIMATED_WEBP = 0x02
 GREY_MODES = ("1", "L", "LA")
-CHANNELS = {1: [0], 2: [0, 3], 3: [0, 1, 2], 4: [0, 1, 2, 3]}  # of red, green, blue and alpha
+CHANNELS = {1: [0], 2: [0, 3], 3: [0, 1, 2], 4: [0, 1, 2, 3]}  # indices into RGBA by the number of channels
 
 
 def is_animation(data: bytes) -> bool:
-    """Whether the file is a GIF, or a WebP or PNG file that holds more than a still picture."""
+    """Whether a file is a GIF, an animated WebP, or an APNG of more than one frame."""
     if data.startswith(b"GIF8"):
         return True
     if data.startswith(b"RIFF"):
@@ -44,43 +45,55 @@ def is_animation(data: bytes) -> bool:
 
 
 def decode(data: bytes, max_pixels: int, limits: ClipLimits) -> Clip:
-    """Read an animation; its frames are composed while they are taken.
+    """Decode an animation; its frames are composed while they are taken.
+
+    Parameters
+    ----------
+    data : bytes
+        The file, for which `is_animation` is true.
+    max_pixels : int
+        Of a frame.
+    limits : ClipLimits
+
+    Returns
+    -------
+    Clip
 
     Raises
     ------
     UnsupportedFormatError
         If it has 16 bits per channel.
     BrokenFileError
-        If it is truncated or damaged.
+        If it is truncated or damaged; taking the frames raises it too.
     TooLargeError
         If it has more pixels, frames or seconds than the limits allow.
     """
-    file_format, width, height = _header(data)
+    file_format, width, height = _read_header(data)
     check_size(width, height, max_pixels, file_format)
     grey, opaque, times = file_format != "WEBP", True, []
-    for image in _images(data, file_format):
-        pixels = _pixels(image, (width, height))
+    for image in _compose_frames(data, file_format):
+        pixels = _read_pixels(image, (width, height))
         grey = grey and (file_format == "GIF" or image.mode in GREY_MODES) and _is_grey(pixels)
         opaque = opaque and is_opaque(pixels[..., 3])
         duration = float(image.info.get("duration", 0))
-        times.append(duration if duration > HASTE else USUAL)
+        times.append(duration if duration > TOO_SHORT else DEFAULT_DURATION)
         check_clip(width, height, len(times), sum(times) / 1000, limits, more=True)
     repeats = [round(time / min(times)) for time in times]
     if sum(repeats) > min(limits.frames, limits.pixels // (width * height)):
         repeats = [1] * len(times)
     channels = (1 if grey else 3) + (not opaque)
     with Image.open(io.BytesIO(data), formats=[file_format]) as image:
-        profile, turned = image.info.get("icc_profile"), read_orientation(image.getexif)
-    if turned > 4:
+        profile, turn = image.info.get("icc_profile"), read_orientation(image.getexif)
+    if turn > 4:
         width, height = height, width
 
     def frames() -> Iterator[TimedFrame]:
         interval, shown = sum(times) / sum(repeats) / 1000, 0
-        for image, repeat in zip(_images(data, file_format), repeats, strict=True):
-            pixels = _pixels(image, image.size)[..., CHANNELS[channels]]
+        for image, repeat in zip(_compose_frames(data, file_format), repeats, strict=True):
+            pixels = _read_pixels(image, image.size)[..., CHANNELS[channels]]
             colours = channels - (not opaque)
             pixels[..., :colours] = to_srgb(pixels[..., :colours], profile)
-            frame = turn_upright(pixels, turned)
+            frame = turn_upright(pixels, turn)
             for _ in range(repeat):
                 yield TimedFrame(frame, shown * interval)
                 shown += 1
@@ -88,8 +101,8 @@ def decode(data: bytes, max_pixels: int, limits: ClipLimits) -> Clip:
     return Clip(width, height, channels, MEDIA_TYPES[file_format], frames())
 
 
-def _header(data: bytes) -> tuple[str, int, int]:
-    """Pillow's name of the format, width and height; refuse a file that is damaged as far as that can be told."""
+def _read_header(data: bytes) -> tuple[str, int, int]:
+    """Read the format's name (as Pillow's), width and height; refuse a file whose damage shows in its structure."""
     if data.startswith(b"GIF8"):
         return "GIF", int.from_bytes(data[6:8], "little"), int.from_bytes(data[8:10], "little")
     if data.startswith(b"RIFF"):
@@ -103,20 +116,19 @@ def _header(data: bytes) -> tuple[str, int, int]:
     width, height, depth, *_ = HEADER.unpack(header)
     if depth > 8:
         raise UnsupportedFormatError(
-            "This animated PNG has 16 bits per channel, which is not read: "
-            "save it with 8 bits, and upload the new file."
+            "Save this animated PNG with 8 bits per channel, and upload the new file: with 16 bits it cannot be read."
         )
     return "PNG", width, height
 
 
-def _images(data: bytes, file_format: str) -> Iterator[Image.Image]:
-    """The frames, composed: one image object that changes."""
+def _compose_frames(data: bytes, file_format: str) -> Iterator[Image.Image]:
+    """Yield the composed frames, always the same image object."""
     file = io.BytesIO(data)
     with Image.open(file, formats=[file_format]) as image:
-        yield from islice(_sought(image, file), 1 if getattr(image, "default_image", False) else 0, None)
+        yield from islice(_seek_frames(image, file), 1 if getattr(image, "default_image", False) else 0, None)
 
 
-def _sought(image: Image.Image, file: io.BytesIO) -> Iterator[Image.Image]:
+def _seek_frames(image: Image.Image, file: io.BytesIO) -> Iterator[Image.Image]:
     shown = 0
     while True:
         try:
@@ -125,7 +137,7 @@ def _sought(image: Image.Image, file: io.BytesIO) -> Iterator[Image.Image]:
             break
         yield image
         shown += 1
-    # The number of a GIF's frames is nowhere in it: it ends with a mark. The others say theirs.
+    # A GIF does not say how many frames it has: it ends with a trailer. The other formats do.
     if image.format == "GIF":
         whole = file.getvalue()[file.tell() - 1 : file.tell()] == TRAILER
     else:
@@ -134,7 +146,7 @@ def _sought(image: Image.Image, file: io.BytesIO) -> Iterator[Image.Image]:
         raise BrokenFileError(DAMAGED.format(image.format))
 
 
-def _pixels(image: Image.Image, size: tuple[int, int]) -> NDArray[np.uint8]:
+def _read_pixels(image: Image.Image, size: tuple[int, int]) -> NDArray[np.uint8]:
     pixels = np.asarray(image.convert("RGBA"))
     if image.size != size:
         raise BrokenFileError(DAMAGED.format(image.format))

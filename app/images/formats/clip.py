@@ -15,7 +15,7 @@ ROUNDING = 0.0015  # seconds: of two times to milliseconds, and a little
 
 @dataclass(frozen=True)
 class ClipLimits:
-    """What a video may have: frames, seconds that it plays, pixels of all its frames together."""
+    """Limits of a video: number of frames, seconds for which it plays, pixels of all its frames together."""
 
     frames: int
     seconds: float
@@ -23,7 +23,7 @@ class ClipLimits:
 
 
 class TimedFrame(NamedTuple):
-    """``pixels`` (H, W, C) uint8, upright and in sRGB, C as `Clip.channels`; ``seconds`` is when it is shown."""
+    """A frame and when it is shown: ``pixels`` is (H, W, C) uint8, upright and in sRGB, C as `Clip.channels`."""
 
     pixels: Pixels
     seconds: float
@@ -31,7 +31,7 @@ class TimedFrame(NamedTuple):
 
 @dataclass(frozen=True)
 class Clip:
-    """A video whose ``frames`` are decoded while they are taken, once.
+    """An uploaded video or animation, whose ``frames`` are decoded while they are taken, once.
 
     ``channels`` is 1 grey, 2 grey and alpha, 3 RGB, 4 RGB and alpha; ``media_type`` is what the file is,
     ``nominal_rate`` the frames a second that its header names, 0 if none.
@@ -45,7 +45,7 @@ class Clip:
     nominal_rate: float = 0.0
 
     def media(self, times: Sequence[float]) -> Media:
-        """Its properties, once all frames were taken; ``times`` are when each is shown."""
+        """Describe the clip once all its frames were taken; ``times`` are the seconds at which each is shown."""
         return Media(
             self.width,
             self.height,
@@ -59,23 +59,24 @@ class Clip:
 
 
 def check_clip(width: int, height: int, frames: int, seconds: float, limits: ClipLimits, *, more: bool = False) -> None:
-    """Refuse a video that has too much of anything.
+    """Refuse a video that exceeds a limit.
 
     Parameters
     ----------
     width, height : int
         Of a frame.
     frames : int
+        How many there are.
     seconds : float
-        That it plays; 0 if unknown.
+        For which it plays; 0 if unknown.
     limits : ClipLimits
     more : bool, optional
-        Whether it may go on after these.
+        Whether more frames may follow.
 
     Raises
     ------
     TooLargeError
-        With the limits, and how much shorter or smaller it has to be.
+        With the limits, and how much shorter or smaller the video must be.
 
     Examples
     --------
@@ -87,21 +88,22 @@ def check_clip(width: int, height: int, frames: int, seconds: float, limits: Cli
     rate = frames / seconds if seconds else 0.0
     short_enough = min(frames, limits.frames, int(limits.seconds * rate) if rate else frames)
     few_enough = min(short_enough, limits.pixels // area)
-    advice = [f"trim it to its first {_length(few_enough, rate)}"] if few_enough > 1 else []
+    advice = [f"trim it to its first {_describe_length(few_enough, rate)}"] if few_enough > 1 else []
     if few_enough < short_enough:
         scale = (limits.pixels / (area * short_enough)) ** 0.5
         smaller = f"{max(1, int(width * scale))} × {max(1, int(height * scale))} pixels"
-        rest = f" and trim it to its first {_length(short_enough, rate)}" if short_enough < frames or more else ""
+        shorten = short_enough < frames or more
+        rest = f" and trim it to its first {_describe_length(short_enough, rate)}" if shorten else ""
         advice.append(f"scale it to {smaller}{rest}")
     raise TooLargeError(
-        f"The video has {'at least ' if more else ''}{_length(frames, rate)} of {width} × {height} pixels; at most "
-        f"{limits.frames:,} frames, {limits.seconds:g} seconds and {limits.pixels / 1e6:,.1f} megapixels "
+        f"The video has {'at least ' if more else ''}{_describe_length(frames, rate)} of {width} × {height} pixels; "
+        f"at most {limits.frames:,} frames, {limits.seconds:g} seconds and {limits.pixels / 1e6:,.1f} megapixels "
         f"(all frames together) are accepted. {', or '.join(advice).capitalize() or 'Trim it'}, and upload it again."
     )
 
 
 def limit_clip(frames: Iterator[TimedFrame], limits: ClipLimits) -> Iterator[TimedFrame]:
-    """Pass on frames, and refuse the first that is too much: what a file says of its length may be a lie.
+    """Pass frames on until one exceeds a limit: the length in a file's header may be wrong.
 
     Raises
     ------
@@ -116,11 +118,21 @@ def limit_clip(frames: Iterator[TimedFrame], limits: ClipLimits) -> Iterator[Tim
         yield frame
 
 
-def estimate_rate(seconds: Sequence[float], said: float = 0.0) -> float:
-    """Frames a second, from when each is shown: the average, within 1 and 120; 0 of a single frame.
+def estimate_rate(seconds: Sequence[float], nominal: float = 0.0) -> float:
+    """Estimate the frames a second from the times of the frames.
 
-    What the header has ``said``, or else a usual rate, is taken for an average that differs from it by the rounding of
-    times to milliseconds alone.
+    Parameters
+    ----------
+    seconds : sequence of float
+        When each frame is shown.
+    nominal : float, optional
+        The rate that the header names; 0 if none.
+
+    Returns
+    -------
+    float
+        The average, between 1 and 120; 0 of a single frame. An average that the rounding of times to milliseconds
+        alone may have moved away from the nominal rate, or else from a usual one, is that rate.
 
     Examples
     --------
@@ -132,9 +144,9 @@ def estimate_rate(seconds: Sequence[float], said: float = 0.0) -> float:
     intervals, span = len(seconds) - 1, seconds[-1] - seconds[0]
     rate = intervals / span if span > 0 else USUAL_RATE
     usual = min((float(round(rate)), round(rate) / 1.001), key=lambda each: abs(each - rate))
-    meant = (each for each in (said, usual) if each and abs(intervals / each - span) <= ROUNDING)
-    return min(FASTEST, max(SLOWEST, next(meant, round(rate, 3))))
+    likely = (each for each in (nominal, usual) if each and abs(intervals / each - span) <= ROUNDING)
+    return min(FASTEST, max(SLOWEST, next(likely, round(rate, 3))))
 
 
-def _length(frames: int, rate: float) -> str:
+def _describe_length(frames: int, rate: float) -> str:
     return f"{frames:,} frames" + (f" ({frames / rate:.1f} seconds)" if rate else "")

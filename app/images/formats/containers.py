@@ -1,16 +1,27 @@
-"""Which files are videos, told by content, and whether they are whole: both kinds are boxes that say their length."""
+"""Containers of videos: recognises MP4, QuickTime, WebM and Matroska by content, and whether a file is complete.
+
+Both kinds are made of parts that begin with their length: ISO base media boxes, and EBML elements.
+"""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 EBML, SEGMENT, DOCUMENT_TYPE = 0x1A45DFA3, 0x18538067, 0x4282
-BOXES = (b"ftyp", b"moov", b"mdat", b"wide", b"free", b"skip", b"pnot")  # that old QuickTime files start with
+BOXES = (
+    b"ftyp",
+    b"moov",
+    b"mdat",
+    b"wide",
+    b"free",
+    b"skip",
+    b"pnot",
+)  # first box; all but ftyp in old QuickTime files only
 STILLS = (b"heic", b"heix", b"heim", b"heis", b"hevc", b"mif1", b"msf1", b"avif", b"avis")
 
 
 @dataclass(frozen=True)
 class Container:
-    """``demuxer`` is FFmpeg's name; ``whole`` tells whether the file ends where it says."""
+    """A container: ``demuxer`` is FFmpeg's name of it, ``whole`` whether the file is as long as its parts say."""
 
     demuxer: str
     media_type: str
@@ -18,7 +29,7 @@ class Container:
 
 
 def identify_container(data: bytes) -> Container | None:
-    """Tell a video's container; None if it is not one.
+    """Recognise a video's container; None if the file is no video.
 
     Examples
     --------
@@ -27,10 +38,10 @@ def identify_container(data: bytes) -> Container | None:
     >>> identify_container(b"GIF89a")
     """
     if data.startswith(EBML.to_bytes(4, "big")):
-        document = next((data[at:end] for name, at, end in _elements(data) if name == EBML), b"")
-        webm = any(name == DOCUMENT_TYPE and document[at:end] == b"webm" for name, at, end in _elements(document))
-        whole = any(name == SEGMENT for name, _, _ in _elements(data))
-        whole = whole and all(end <= len(data) for _, _, end in _elements(data))
+        document = next((data[at:end] for name, at, end in _read_elements(data) if name == EBML), b"")
+        webm = any(name == DOCUMENT_TYPE and document[at:end] == b"webm" for name, at, end in _read_elements(document))
+        whole = any(name == SEGMENT for name, _, _ in _read_elements(data))
+        whole = whole and all(end <= len(data) for _, _, end in _read_elements(data))
         return Container("matroska", "video/webm" if webm else "video/x-matroska", whole)
     if data[4:8] in BOXES and data[8:12] not in STILLS:
         quicktime = data[4:8] != b"ftyp" or data[8:12] == b"qt  "
@@ -42,9 +53,9 @@ def _has_all_boxes(data: bytes) -> bool:
     at = 0
     while at + 8 <= len(data):
         size = int.from_bytes(data[at : at + 4], "big")
-        if size == 1:
+        if size == 1:  # 64 bits follow
             size = int.from_bytes(data[at + 8 : at + 16], "big")
-        if size == 0:  # the last one, until the file ends
+        if size == 0:  # the last box, which extends to the end of the file
             return True
         if size < 8:
             return False
@@ -52,12 +63,12 @@ def _has_all_boxes(data: bytes) -> bool:
     return at <= len(data)
 
 
-def _elements(data: bytes) -> Iterator[tuple[int, int, int]]:
-    """Name, start and end of each element's content; one of unknown length lasts until the data end."""
+def _read_elements(data: bytes) -> Iterator[tuple[int, int, int]]:
+    """Yield name, start and end of each element's content; one of unknown length extends to the end of the data."""
     at = 0
     while at < len(data):
-        name_length, length = _width(data, at), 0
-        length = _width(data, at + name_length)
+        name_length, length = _measure_number(data, at), 0
+        length = _measure_number(data, at + name_length)
         start = at + name_length + length
         if not name_length or not length or start > len(data):
             return
@@ -68,6 +79,6 @@ def _elements(data: bytes) -> Iterator[tuple[int, int, int]]:
         yield name, start, at
 
 
-def _width(data: bytes, at: int) -> int:
-    """Bytes of a number of variable length, by its leading zeros; 0 if there is none."""
+def _measure_number(data: bytes, at: int) -> int:
+    """Return the bytes of a number of variable length, by its leading zeros; 0 if there is none."""
     return 9 - data[at].bit_length() if at < len(data) and data[at] else 0

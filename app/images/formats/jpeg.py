@@ -1,4 +1,4 @@
-"""JPEG with 8 bits per channel: grey, colour and CMYK, baseline and progressive; of several pictures the first."""
+"""JPEG decoder, 8 bits per channel: grey, colour and CMYK, baseline and progressive; the first of several pictures."""
 
 import io
 
@@ -13,11 +13,11 @@ NAME = "JPEG"
 START_OF_FRAME = {*range(0xC0, 0xD0)} - {0xC4, 0xC8, 0xCC}
 START_OF_SCAN = 0xDA
 WITHOUT_LENGTH = {0x01, *range(0xD0, 0xD9)}
-EMPTY_CORNER = 8  # pixels: the smallest block a decoder fills with mid-grey when the data end too early
+EMPTY_CORNER = 8  # pixels: the smallest block that a decoder fills with mid-grey when the data end too early
 
 
 def decode(data: bytes, max_pixels: int) -> Raw:
-    """Read a JPEG file.
+    """Decode a JPEG file.
 
     Raises
     ------
@@ -28,12 +28,12 @@ def decode(data: bytes, max_pixels: int) -> Raw:
     TooLargeError
         If it has more than ``max_pixels``.
     """
-    precision, height, width = _frame(data)
+    precision, height, width = _read_frame_header(data)
     check_size(width, height, max_pixels, NAME)
     if precision != 8:
         raise UnsupportedFormatError(
-            f"This JPEG file has {precision} bits per channel, which few programs can read: "
-            "save it as a 16-bit PNG or TIFF, or as an ordinary JPEG."
+            f"Save this JPEG file as a 16-bit PNG or TIFF, or as an ordinary JPEG, and upload the new file: "
+            f"it has {precision} bits per channel, which few programs can read."
         )
     with Image.open(io.BytesIO(data), formats=["JPEG"]) as image:
         if image.size != (width, height):
@@ -47,8 +47,8 @@ def decode(data: bytes, max_pixels: int) -> Raw:
     return Raw(pixels, None, profile, upright)
 
 
-def _frame(data: bytes) -> tuple[int, int, int]:
-    """Bits per channel, height and width, from the first frame header."""
+def _read_frame_header(data: bytes) -> tuple[int, int, int]:
+    """Read bits per channel, height and width from the first frame header."""
     at = 2
     while at + 9 <= len(data) and data[at] == 0xFF:
         marker = data[at + 1]
@@ -57,7 +57,7 @@ def _frame(data: bytes) -> tuple[int, int, int]:
             return data[at + 4], int.from_bytes(height, "big"), int.from_bytes(width, "big")
         if marker == START_OF_SCAN:
             break
-        if marker == 0xFF:  # any number of these may stand before a marker
+        if marker == 0xFF:  # fill bytes: any number of them may precede a marker
             at += 1
         elif marker in WITHOUT_LENGTH:
             at += 2
@@ -69,8 +69,8 @@ def _frame(data: bytes) -> tuple[int, int, int]:
 def _ends_too_early(data: bytes, pixels: Pixels) -> bool:
     """Whether the decoder ran out of data and made up the rest.
 
-    Decoders do not tell: they fill the rest with mid-grey. Where the last corner is mid-grey, more data are put before
-    the end of the file: a decoder that had enough ignores them, one that had not draws them.
+    Decoders do not report that: they fill the rest with mid-grey. Where the last corner is mid-grey, more data are put
+    before the end of the file: a decoder that had enough ignores them, one that had not draws them.
     """
     corner = pixels[-EMPTY_CORNER:, -EMPTY_CORNER:]
     if np.ptp(corner.astype(np.int16)) > 2 or abs(int(corner[0, 0, 0]) - 128) > 1:

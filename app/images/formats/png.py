@@ -1,4 +1,4 @@
-"""PNG of every kind: 1 to 16 bits, grey, palette and colour, transparent or not, interlaced or not.
+"""PNG decoder for every kind: 1 to 16 bits, grey, palette and colour, transparent or not, interlaced or not.
 
 Animated ones are read by `app.images.formats.animation`. The gAMA and cHRM chunks are not used.
 """
@@ -24,7 +24,7 @@ PIECE = 1 << 20
 
 
 def decode(data: bytes, max_pixels: int) -> Raw:
-    """Read a PNG file.
+    """Decode a PNG file.
 
     Raises
     ------
@@ -41,7 +41,7 @@ def decode(data: bytes, max_pixels: int) -> Raw:
     if depth not in DEPTHS.get(colour, ()) or interlaced > 1:
         raise BrokenFileError(DAMAGED.format(NAME))
     check_size(width, height, max_pixels, NAME)
-    # Only what the pixels need is handed on; the rest is metadata, and not worth a parser's risk.
+    # Only what the pixels need is handed on: the rest is metadata, and not worth the risk of parsing it.
     kept = [SIGNATURE, *make_chunk(b"IHDR", header)]
     compressed: list[bytes] = []
     profile, upright, ended = None, 1, False
@@ -51,13 +51,13 @@ def decode(data: bytes, max_pixels: int) -> Raw:
         if name == b"IDAT":
             compressed.append(content)
         elif name == b"iCCP":
-            profile = _profile(content)
+            profile = _read_profile(content)
         elif name == b"eXIf":
-            upright = read_orientation(partial(_exif, content))
+            upright = read_orientation(partial(_read_exif, content))
         elif name == b"IEND":
             ended = True
             break
-    size = _inflated_size(width, height, depth * SAMPLES_PER_PIXEL[colour], interlaced)
+    size = _compute_inflated_size(width, height, depth * SAMPLES_PER_PIXEL[colour], interlaced)
     if not ended or not _inflates_to(compressed, size):
         raise BrokenFileError(DAMAGED.format(NAME))
     try:
@@ -69,7 +69,7 @@ def decode(data: bytes, max_pixels: int) -> Raw:
 
 
 def read_chunks(data: bytes) -> Iterator[tuple[bytes, bytes]]:
-    """Name and content of every chunk whose checksum holds."""
+    """Yield name and content of every complete chunk; raise `BrokenFileError` at one whose checksum is wrong."""
     at = len(SIGNATURE)
     while at + 12 <= len(data):
         length = int.from_bytes(data[at : at + 4], "big")
@@ -81,8 +81,8 @@ def read_chunks(data: bytes) -> Iterator[tuple[bytes, bytes]]:
         at += 12 + length
 
 
-def _inflated_size(width: int, height: int, bits: int, interlaced: int) -> int:
-    """Bytes of all rows with their filter bytes."""
+def _compute_inflated_size(width: int, height: int, bits: int, interlaced: int) -> int:
+    """Count the bytes of all rows with their filter bytes."""
     size = 0
     for x, y, step_x, step_y in PASSES if interlaced else ((0, 0, 1, 1),):
         columns, rows = -((x - width) // step_x), -((y - height) // step_y)
@@ -92,7 +92,7 @@ def _inflated_size(width: int, height: int, bits: int, interlaced: int) -> int:
 
 
 def _inflates_to(pieces: list[bytes], size: int) -> bool:
-    """Whether a zlib stream is whole and has exactly this many bytes, without keeping them."""
+    """Whether a zlib stream is complete and inflates to exactly this many bytes, which are not kept."""
     inflater, total = isal_zlib.decompressobj(), 0
     try:
         for piece in pieces:
@@ -107,14 +107,14 @@ def _inflates_to(pieces: list[bytes], size: int) -> bool:
     return bool(inflater.eof) and total == size
 
 
-def _profile(content: bytes) -> bytes | None:
+def _read_profile(content: bytes) -> bytes | None:
     try:
         return bytes(isal_zlib.decompressobj().decompress(content.partition(b"\0")[2][1:], PROFILE_BYTES))
     except isal_zlib.IsalError:  # type: ignore[misc]  # its stub declares an instance
         return None
 
 
-def _exif(content: bytes) -> Image.Exif:
+def _read_exif(content: bytes) -> Image.Exif:
     exif = Image.Exif()
     exif.load(content)
     return exif

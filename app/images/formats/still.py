@@ -16,10 +16,10 @@ DAMAGED = "This {} file is damaged or incomplete: open it in an image editor, sa
 
 @dataclass(frozen=True)
 class Raw:
-    """A picture as its file holds it: not yet upright, not yet sRGB.
+    """A still picture as its file holds it: not yet upright, not yet sRGB.
 
-    ``pixels`` is (H, W, C), uint8 or uint16 over the whole range of its type; C is 1 grey, 3 RGB or 4 CMYK (0 is no
-    ink). ``alpha`` is (H, W) of the same type, not premultiplied, or None. ``profile`` is an ICC profile;
+    ``pixels`` is (H, W, C), uint8 or uint16 over the whole range of its type; C is 1 (grey), 3 (RGB) or 4 (CMYK, 0 is
+    no ink). ``alpha`` is (H, W) of the same type, not premultiplied, or None. ``profile`` is an ICC profile;
     ``orientation`` is EXIF's, 1 to 8.
     """
 
@@ -30,12 +30,20 @@ class Raw:
 
 
 def check_size(width: int, height: int, max_pixels: int, name: str) -> None:
-    """Refuse a picture by what its header says, before a pixel is decoded.
+    """Refuse a picture by the size in its header, before a pixel is decoded.
+
+    Parameters
+    ----------
+    width, height : int
+        In pixels.
+    max_pixels : int
+    name : str
+        Of the format, for the message.
 
     Raises
     ------
     BrokenFileError
-        If it has no pixels.
+        If a side is less than 1.
     TooLargeError
         If it has more than ``max_pixels``.
     """
@@ -49,7 +57,7 @@ def check_size(width: int, height: int, max_pixels: int, name: str) -> None:
 
 
 def split_alpha(array: Pixels) -> tuple[Pixels, Pixels | None]:
-    """Split (H, W) or (H, W, 1–4) into colour (H, W, 1 or 3) and alpha."""
+    """Split (H, W) or (H, W, 1–4) into colour (H, W, 1 or 3) and alpha (H, W), which is None if there is none."""
     if array.ndim == 2:
         return array[..., None], None
     if array.shape[2] in (2, 4):
@@ -58,20 +66,20 @@ def split_alpha(array: Pixels) -> tuple[Pixels, Pixels | None]:
 
 
 def is_opaque(alpha: Pixels) -> bool:
-    """Whether nothing can be seen through; 99 % counts as opaque: photographs with 254 of 255 everywhere are met."""
+    """Whether no pixel is transparent; 99 % counts as opaque, for some photographs have 254 of 255 everywhere."""
     return bool(alpha.min() >= OPAQUE * np.iinfo(alpha.dtype).max)
 
 
 def read_orientation(read: Callable[[], Image.Exif]) -> int:
-    """EXIF orientation of what ``read`` gives, 1 (upright) if that is broken: no reason to refuse a picture."""
+    """Read the EXIF orientation with ``read``; 1 (upright) if it is broken, which is no reason to refuse a picture."""
     try:
         return int(read().get(EXIF_ORIENTATION, 1))
-    except Exception:  # Pillow raises whatever it likes on broken EXIF
+    except Exception:  # on broken EXIF Pillow raises errors of many kinds
         return 1
 
 
 def turn_upright(array: Pixels, orientation: int) -> Pixels:
-    """Apply EXIF's orientation, a number from 1 to 8; any other leaves the picture as it is."""
+    """Apply an EXIF orientation, 1 to 8, to (H, W) or (H, W, C); any other number leaves the picture as it is."""
     if orientation in (5, 6, 7, 8):
         array = array.swapaxes(0, 1)
     if orientation in (2, 3, 6, 7):

@@ -1,4 +1,4 @@
-"""TIFF with whole numbers of up to 16 bits: grey, palette, RGB and CMYK, in strips or tiles; the first page."""
+"""TIFF decoder, integers of up to 16 bits: grey, palette, RGB and CMYK, in strips or tiles; the first page."""
 
 import io
 import math
@@ -38,14 +38,14 @@ ADVICE = "save it as an ordinary 8- or 16-bit grey or RGB picture, PNG or TIFF, 
 
 
 def decode(data: bytes, max_pixels: int) -> Raw:
-    """Read the first page of a TIFF file.
+    """Decode the first page of a TIFF file.
 
     Raises
     ------
     BrokenFileError
         If it is truncated, damaged, or holds fewer pixels than its header says.
     UnsupportedFormatError
-        If its numbers, its colours or its compression are of a kind that is not read.
+        If its numbers, its colours or its compression are not supported.
     TooLargeError
         If it has more than ``max_pixels``.
     """
@@ -55,34 +55,34 @@ def decode(data: bytes, max_pixels: int) -> Raw:
         _check_kind(page)
         _check_segments(page, len(data))
         array = page.asarray()
-        samples = _samples_last(page, array)
+        samples = _move_samples_last(page, array)
         profile, orientation = page.tags.valueof("InterColorProfile"), page.tags.valueof("Orientation", 1)
-        colour, alpha = _colour(page, samples), _alpha(page, samples)
+        colour, alpha = _extract_colour(page, samples), _extract_alpha(page, samples)
         if alpha is not None and page.extrasamples[0] == EXTRASAMPLE.ASSOCALPHA:
-            colour = _unpremultiplied(colour, alpha)
+            colour = _unpremultiply(colour, alpha)
     return Raw(colour, alpha, profile if isinstance(profile, bytes) else None, orientation)
 
 
 def _check_kind(page: TiffPage) -> None:
     if page.sampleformat == SAMPLEFORMAT.IEEEFP:
         raise UnsupportedFormatError(
-            f"This TIFF file holds floating-point numbers, whose black and white are not known: {ADVICE}"
+            f"This TIFF file holds floating-point numbers, of which black and white are not known: {ADVICE}"
         )
     if page.sampleformat != SAMPLEFORMAT.UINT or not 1 <= page.bitspersample <= 16:
         raise UnsupportedFormatError(
-            f"This TIFF file has {page.bitspersample} bits per channel of a kind that is not read: {ADVICE}"
+            f"This TIFF file has {page.bitspersample} bits per channel of a kind that is not supported: {ADVICE}"
         )
     converted = page.photometric != PHOTOMETRIC.YCBCR or page.compression == COMPRESSION.JPEG
     if page.photometric not in CHANNELS or not converted or page.samplesperpixel < CHANNELS[page.photometric]:
-        raise UnsupportedFormatError(f"This TIFF file has colours of a kind that is not read: {ADVICE}")
+        raise UnsupportedFormatError(f"This TIFF file has colours of a kind that is not supported: {ADVICE}")
     if page.compression not in COMPRESSIONS:
-        raise UnsupportedFormatError(f"This TIFF file is compressed in a way that is not read: {ADVICE}")
+        raise UnsupportedFormatError(f"This TIFF file is compressed in a way that is not supported: {ADVICE}")
     if page.imagedepth != 1:
         raise UnsupportedFormatError(f"This TIFF file is a volume, not a picture: {ADVICE}")
 
 
 def _check_segments(page: TiffPage, size: int) -> None:
-    """Refuse strips or tiles that are missing or lie outside the file: the library would leave them black."""
+    """Refuse strips or tiles that are missing, empty or outside the file: the library would leave them black."""
     starts, lengths = page.dataoffsets, page.databytecounts
     if not len(starts) == len(lengths) == math.prod(page.chunked):
         raise BrokenFileError(DAMAGED.format(NAME))
@@ -93,8 +93,8 @@ def _check_segments(page: TiffPage, size: int) -> None:
         raise BrokenFileError(DAMAGED.format(NAME))
 
 
-def _samples_last(page: TiffPage, array: NDArray[Any]) -> Pixels:
-    """(H, W, samples) of 8 or 16 bits, each over its whole range."""
+def _move_samples_last(page: TiffPage, array: NDArray[Any]) -> Pixels:
+    """Arrange the samples as (H, W, samples) of 8 or 16 bits, each over its whole range."""
     height, width, samples = page.imagelength, page.imagewidth, page.samplesperpixel
     if page.planarconfig == 2 and samples > 1:
         array = np.moveaxis(array.reshape(samples, height, width), 0, -1)
@@ -107,25 +107,25 @@ def _samples_last(page: TiffPage, array: NDArray[Any]) -> Pixels:
     return scaled
 
 
-def _colour(page: TiffPage, samples: Pixels) -> Pixels:
+def _extract_colour(page: TiffPage, samples: Pixels) -> Pixels:
     if page.photometric == PHOTOMETRIC.PALETTE:
         entries = np.asarray(page.colormap)
-        # The table holds 16 bits; some programs wrote 8 into it.
+        # The entries have 16 bits; some programs wrote 8 into them.
         table = (entries if entries.max() < 256 else entries >> 8).astype(np.uint8)
         return np.ascontiguousarray(np.moveaxis(table[:, samples[..., 0]], 0, -1))
     colour = samples[..., : CHANNELS[page.photometric]]
     return ~colour if page.photometric == PHOTOMETRIC.MINISWHITE else colour
 
 
-def _alpha(page: TiffPage, samples: Pixels) -> Pixels | None:
-    """Take the first extra channel, if the file says that it is one of opacity."""
+def _extract_alpha(page: TiffPage, samples: Pixels) -> Pixels | None:
+    """Take the first extra channel if the file declares it as opacity."""
     if page.extrasamples and page.extrasamples[0] in (EXTRASAMPLE.ASSOCALPHA, EXTRASAMPLE.UNASSALPHA):
         alpha: Pixels = samples[..., CHANNELS[page.photometric]]
         return alpha if page.photometric != PHOTOMETRIC.PALETTE else None
     return None
 
 
-def _unpremultiplied(colour: Pixels, alpha: Pixels) -> Pixels:
+def _unpremultiply(colour: Pixels, alpha: Pixels) -> Pixels:
     peak = np.iinfo(colour.dtype).max
     if alpha.min() == peak:
         return colour

@@ -1,8 +1,8 @@
-"""Videos: MP4 and QuickTime with H.264, WebM and Matroska with VP8, VP9 or AV1; the picture only, never sound or text.
+"""Video decoder: MP4 and QuickTime with H.264, WebM and Matroska with VP8, VP9 or AV1; the picture, not the sound.
 
-The numbers become RGB by the matrix and the range that the stream names (where it names none: BT.601 below 720 lines,
-otherwise BT.709; limited range) and count as sRGB; more than 8 bits become 8. Frames are turned upright; pixels that
-are not square are made so by enlarging one axis. The rate is the average one. What is interlaced stays so.
+YUV becomes RGB by the matrix and the range that the stream names (where it names none: BT.601 below 720 lines,
+otherwise BT.709; limited range) and counts as sRGB; more than 8 bits become 8. Frames are turned upright; pixels that
+are not square become square by enlarging one axis. The frame rate is the average. Interlaced frames stay interlaced.
 """
 
 import io
@@ -30,13 +30,13 @@ from app.images.formats.still import check_size, is_opaque, turn_upright
 
 NAME = "video"
 DAMAGED = (
-    "This video is damaged or incomplete: see whether it plays to its end, save it again as MP4 with H.264, "
+    "This video is damaged or incomplete: check that it plays to its end, save it again as MP4 with H.264, "
     "and upload the new file."
 )
-# By the name of the codec: which decoder reads the alpha channel too, where another is the better one without.
+# Decoder for an alpha channel, by the codec's name; None where the usual decoder is the one.
 CODECS = {"h264": None, "vp8": "libvpx", "vp9": "libvpx-vp9", "av1": None}
 THREADS = 2
-# Without the last two, chroma is not interpolated and every channel is one or two levels of 255 too dark.
+# Without the last two chroma is not interpolated, and every channel is one or two of 255 levels too dark.
 SCALING = Interpolation.BILINEAR | Interpolation.ACCURATE_RND | Interpolation.FULL_CHR_H_INT
 RGB, UNSPECIFIED = 0, 2  # of the matrix coefficients of ITU-T H.273, as are the keys
 MATRICES = {
@@ -51,9 +51,9 @@ HD_LINES = 720
 NEUTRAL = 128
 HIGH_DYNAMIC_RANGE = {ColorTrc.SMPTE2084, ColorTrc.ARIB_STD_B67}
 PADDING = 1 << 16  # pixels
-OBLONG = 4  # pixels said to be so much wider than high, or higher than wide, are a mistake
+OBLONG = 4  # an aspect ratio of pixels beyond 4 : 1 or 1 : 4 is taken for a mistake
 DISPLAY_MATRIX = struct.Struct("=9i")
-# By whether the axes are exchanged, then x and then y mirrored: EXIF's orientation.
+# EXIF's orientation by (axes exchanged, x mirrored, y mirrored), in this order.
 ORIENTATIONS = {
     (False, False, False): 1,
     (False, True, False): 2,
@@ -65,16 +65,30 @@ ORIENTATIONS = {
     (True, False, True): 8,
 }
 
-av.logging.set_level(None)  # FFmpeg would say on standard error what is wrong with every broken file
+av.logging.set_level(None)  # FFmpeg would report every broken file on standard error
 
 
 def decode(data: bytes, container: Container, max_pixels: int, limits: ClipLimits) -> Clip:
-    """Read a video; its frames are decoded while they are taken, and the errors below may come as late as that.
+    """Decode a video; its frames are decoded while they are taken, and the errors below may come as late as that.
+
+    Parameters
+    ----------
+    data : bytes
+        The file.
+    container : Container
+        As recognised by `app.images.formats.containers.identify_container`.
+    max_pixels : int
+        Of a frame.
+    limits : ClipLimits
+
+    Returns
+    -------
+    Clip
 
     Raises
     ------
     UnsupportedFormatError
-        If it has no picture, or one that is not of these codecs, or is HDR.
+        If it has no picture, a codec that is not read, or is HDR.
     BrokenFileError
         If it is truncated or damaged, or its frames change their size.
     TooLargeError
@@ -84,7 +98,7 @@ def decode(data: bytes, container: Container, max_pixels: int, limits: ClipLimit
         raise BrokenFileError(DAMAGED)
     track = _VideoTrack(data, container, max_pixels, limits)
     channels = track.channels
-    # Seldom worth another pass through the file: it has an alpha channel, or begins without colour.
+    # Another pass through the file, but seldom: it has an alpha channel, or begins without colour.
     if channels == 4 and all(is_opaque(frame.pixels[..., 3]) for frame in track.frames(4)):
         channels = 3
     if channels == 1 and not track.is_grey():
@@ -93,57 +107,58 @@ def decode(data: bytes, container: Container, max_pixels: int, limits: ClipLimit
 
 
 class _VideoTrack:
-    """A file's video track, which may be decoded several times; how its frames become pixels is told by the first."""
+    """The video track of a file, which may be decoded several times; its first frame decides how pixels are made."""
 
     def __init__(self, data: bytes, container: Container, max_pixels: int, limits: ClipLimits) -> None:
         self._data, self._demuxer, self._max_pixels, self._limits = data, container.demuxer, max_pixels, limits
-        # Decoders count padded frames; this is only to keep a lie about the size from taking memory.
+        # Decoders count padded frames; this only keeps a wrong size in the header from taking memory.
         self._coded_pixels = 2 * max_pixels + PADDING
-        with _telling(), self._open() as opened:
-            stream = _stream(opened)
-            self._check(opened, stream)
+        with _translate_errors(), self._open() as opened:
+            stream = _find_stream(opened)
+            self._check_headers(opened, stream)
             self.rate = float(stream.average_rate or USUAL_RATE)
-            told = stream.codec_context.colorspace, stream.codec_context.color_range, stream.codec_context.color_trc
-            decoder = self._decoder(stream)
-            first = next(_decoded(opened, stream, decoder), None)
+            named = stream.codec_context.colorspace, stream.codec_context.color_range, stream.codec_context.color_trc
+            decoder = self._open_decoder(stream)
+            first = next(_decode_frames(opened, stream, decoder), None)
             aspect = stream.sample_aspect_ratio or decoder.sample_aspect_ratio
         if first is None:
             raise BrokenFileError(DAMAGED)
-        if {first.color_trc, told[2]} & HIGH_DYNAMIC_RANGE:
+        if {first.color_trc, named[2]} & HIGH_DYNAMIC_RANGE:
             raise UnsupportedFormatError(
-                "This video is HDR, whose colours a texture of ordinary range cannot hold: "
-                "save it as SDR, MP4 with H.264, and upload the new file."
+                "Save this video as SDR, MP4 with H.264, and upload the new file: "
+                "it is HDR, whose colours do not fit into a texture of ordinary range."
             )
         self._coded = first.width, first.height
-        self._scaled = _squared(first.width, first.height, aspect)
+        self._scaled = _square_pixels(first.width, first.height, aspect)
         check_size(*self._scaled, max_pixels, NAME)
         coded = first.colorspace, first.color_range
-        if decoder.codec.canonical_name == "vp8" and told[0] != UNSPECIFIED:
-            coded = told[:2]  # VP8 itself can say nothing but BT.601; browsers record BT.709 in full range
-        self._matrix = _matrix(coded[0], first.height)
+        if decoder.codec.canonical_name == "vp8" and named[0] != UNSPECIFIED:
+            coded = named[:2]  # VP8 itself knows only BT.601; browsers record BT.709 in full range
+        self._matrix = _choose_matrix(coded[0], first.height)
         self._range = ColorRange.JPEG if coded[1] == ColorRange.JPEG else ColorRange.MPEG
-        self._orientation = _orientation(first)
+        self._orientation = _read_orientation(first)
         self.width, self.height = self._scaled[::-1] if self._orientation > 4 else self._scaled
         self.channels = 4 if first.format.name.startswith("yuva") else 1 if _is_neutral(first) else 3
 
     def is_grey(self) -> bool:
         """Whether no frame has a colour."""
-        with _telling(), self._open() as opened:
-            stream = _stream(opened)
-            return all(map(_is_neutral, _decoded(opened, stream, self._decoder(stream))))
+        with _translate_errors(), self._open() as opened:
+            stream = _find_stream(opened)
+            return all(map(_is_neutral, _decode_frames(opened, stream, self._open_decoder(stream))))
 
     def frames(self, channels: int) -> Iterator[TimedFrame]:
+        """Decode the frames to 1 (grey), 3 (RGB) or 4 (RGB and alpha) channels; raise as `decode` does."""
         return limit_clip(self._frames(channels), self._limits)
 
     def _frames(self, channels: int) -> Iterator[TimedFrame]:
         reformatter, (width, height) = VideoReformatter(), self._scaled
-        with _telling(), self._open() as opened:
-            stream = _stream(opened)
-            for index, frame in enumerate(_decoded(opened, stream, self._decoder(stream))):
+        with _translate_errors(), self._open() as opened:
+            stream = _find_stream(opened)
+            for index, frame in enumerate(_decode_frames(opened, stream, self._open_decoder(stream))):
                 if (frame.width, frame.height) != self._coded:
                     raise BrokenFileError(
-                        "The frames of this video change their size on the way: "
-                        "save it again as MP4 with H.264, and upload the new file."
+                        "Save this video again as MP4 with H.264, and upload the new file: "
+                        "its frames do not all have the same size."
                     )
                 picture = reformatter.reformat(
                     frame,
@@ -161,8 +176,8 @@ class _VideoTrack:
                 yield TimedFrame(turn_upright(pixels, self._orientation), seconds)
 
     def _open(self) -> InputContainer:
-        # The demuxer is named and no protocol allowed: nothing but these bytes is opened, whatever they refer to.
-        # No codec is allowed either: the demuxer would use it to look into every track, sound among them.
+        # The demuxer is named and no protocol is allowed: nothing but these bytes is opened, whatever they refer to.
+        # No codec is allowed either: the demuxer would use it to examine every track, sound among them.
         return av.open(
             io.BytesIO(self._data),
             "r",
@@ -171,8 +186,8 @@ class _VideoTrack:
             metadata_errors="replace",
         )
 
-    def _check(self, opened: InputContainer, stream: VideoStream) -> None:
-        """Refuse what is too much by what the headers say, before a frame is decoded."""
+    def _check_headers(self, opened: InputContainer, stream: VideoStream) -> None:
+        """Refuse a video by the size and length in its headers, before a frame is decoded."""
         width, height = stream.width or 1, stream.height or 1
         check_size(width, height, self._max_pixels, NAME)
         if stream.duration and stream.time_base:
@@ -181,7 +196,7 @@ class _VideoTrack:
             seconds = (opened.duration or 0) / av.time_base
         check_clip(width, height, round(seconds * float(stream.average_rate or 0)), seconds, self._limits)
 
-    def _decoder(self, stream: VideoStream) -> VideoCodecContext:
+    def _open_decoder(self, stream: VideoStream) -> VideoCodecContext:
         codec: CodecContext = stream.codec_context
         with_alpha = CODECS[codec.codec.canonical_name]
         if with_alpha and stream.metadata.get("alpha_mode") == "1":
@@ -193,7 +208,7 @@ class _VideoTrack:
 
 
 @contextmanager
-def _telling() -> Iterator[None]:
+def _translate_errors() -> Iterator[None]:
     try:
         yield
     except MemoryError:  # FFmpeg's is one of its own errors, too
@@ -202,22 +217,23 @@ def _telling() -> Iterator[None]:
         raise BrokenFileError(DAMAGED) from error
 
 
-def _stream(opened: InputContainer) -> VideoStream:
-    """Find the first picture that moves and can be decoded."""
+def _find_stream(opened: InputContainer) -> VideoStream:
+    """Find the first video stream that is no cover picture; refuse one whose codec is not read."""
     streams = [each for each in opened.streams.video if not each.disposition & Disposition.attached_pic]
     if not streams:
-        raise UnsupportedFormatError("This file holds no moving picture: upload a video, or a picture as PNG or JPEG.")
+        raise UnsupportedFormatError(
+            "Upload a video, or a picture as PNG or JPEG: this file holds no video, only sound or a cover picture."
+        )
     context = streams[0].codec_context
     name = context.codec.canonical_name if context else "something unknown"
     if name not in CODECS:
         raise UnsupportedFormatError(
-            f"This video is coded as {name.upper()}, which is not read: "
-            "save it as MP4 with H.264, and upload the new file."
+            f"Save this video as MP4 with H.264, and upload the new file: its codec, {name.upper()}, is not supported."
         )
     return streams[0]
 
 
-def _decoded(opened: InputContainer, stream: VideoStream, codec: VideoCodecContext) -> Iterator[VideoFrame]:
+def _decode_frames(opened: InputContainer, stream: VideoStream, codec: VideoCodecContext) -> Iterator[VideoFrame]:
     packets = 0
     for packet in opened.demux(stream):
         packets += packet.size > 0
@@ -242,25 +258,25 @@ def _is_neutral(frame: VideoFrame) -> bool:
     return True
 
 
-def _squared(width: int, height: int, aspect: Fraction | None) -> tuple[int, int]:
-    """Size with square pixels, no axis smaller than it was."""
+def _square_pixels(width: int, height: int, aspect: Fraction | None) -> tuple[int, int]:
+    """Compute the size with square pixels; no axis becomes smaller."""
     if not aspect or not 1 / OBLONG <= aspect <= OBLONG:
         return width, height
     return (round(width * aspect), height) if aspect > 1 else (width, round(height / aspect))
 
 
-def _matrix(coefficients: int, lines: int) -> Colorspace:
+def _choose_matrix(coefficients: int, lines: int) -> Colorspace:
     if coefficients in (RGB, UNSPECIFIED):
         return Colorspace.ITU601 if lines < HD_LINES else Colorspace.ITU709
     if coefficients not in MATRICES:
         raise UnsupportedFormatError(
-            "This video has colours of a kind that is not read: save it as MP4 with H.264, and upload the new file."
+            "Save this video as MP4 with H.264, and upload the new file: its colour matrix is not supported."
         )
     return MATRICES[coefficients]
 
 
-def _orientation(frame: VideoFrame) -> int:
-    """EXIF's number for what the display matrix says; ``x' = a x + c y`` and ``y' = b x + d y``."""
+def _read_orientation(frame: VideoFrame) -> int:
+    """Read the display matrix as an EXIF orientation; ``x' = a x + c y`` and ``y' = b x + d y``."""
     matrix = frame.side_data.get("DISPLAYMATRIX")
     if not isinstance(matrix, SideData) or matrix.buffer_size != DISPLAY_MATRIX.size:
         return 1

@@ -1,4 +1,4 @@
-"""WebP, lossy and lossless, transparent or not; animations are read by `app.images.formats.animation`."""
+"""WebP decoder, lossy and lossless, transparent or not; animations are read by `app.images.formats.animation`."""
 
 import io
 
@@ -12,7 +12,7 @@ NAME = "WebP"
 
 
 def decode(data: bytes, max_pixels: int) -> Raw:
-    """Read a WebP file.
+    """Decode a WebP file.
 
     Raises
     ------
@@ -34,7 +34,13 @@ def decode(data: bytes, max_pixels: int) -> Raw:
 
 
 def read_size(data: bytes) -> tuple[int, int]:
-    """Width and height from the header: opening the file in a decoder allocates the whole canvas already."""
+    """Read width and height from the header: a decoder would allocate the whole canvas on opening the file.
+
+    Raises
+    ------
+    BrokenFileError
+        If there is no such header.
+    """
     kind, body = data[12:16], data[20:30]
     if len(body) == 10:
         if kind == b"VP8X":

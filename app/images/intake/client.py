@@ -1,4 +1,4 @@
-"""Taking in an upload: a process that may be killed decodes it, and what is kept is a PNG file of our own making."""
+"""Client of the decoding server: has an upload decoded in a process that may be killed, and stored as our own PNG."""
 
 import atexit
 import json
@@ -19,10 +19,10 @@ from app.images.media import Media
 
 AT_ONCE = max(2, os.cpu_count() or 2)
 WAIT_SECONDS = 60.0
-PACKAGES = Path(__file__).resolve().parents[3]  # where the package `app` lies
-GRACE_SECONDS = 10.0  # the server kills its children itself; this much later it must be hung
+PACKAGES = Path(__file__).resolve().parents[3]  # the directory of the package `app`
+GRACE_SECONDS = 10.0  # the server kills late children itself; if nothing comes for this much longer, it hangs
 ENVIRONMENT = {
-    "OPENBLAS_NUM_THREADS": "1",  # a process that forks has better only one thread
+    "OPENBLAS_NUM_THREADS": "1",  # a process that forks should have only one thread
     "MALLOC_ARENA_MAX": "1",  # every thread of a decoder would reserve memory that counts as used
 }
 ERRORS: dict[str, type[AppError]] = {
@@ -39,7 +39,7 @@ class Intake(Media):
 
 
 class DecodingServer:
-    """The process that forks the decoders: started when needed, and again when it died."""
+    """The process that forks the decoders: started when it is needed, and again when it has died."""
 
     def __init__(self) -> None:
         self._lock = Lock()
@@ -47,24 +47,24 @@ class DecodingServer:
         self._control: socket.socket | None = None
 
     def start(self) -> None:
-        """Start it without waiting for it, so that the first upload need not."""
+        """Start the process without waiting for it, so that the first upload does not wait either."""
         with self._lock:
             self._ensure_running()
 
     def ask(self, message: bytes) -> socket.socket:
-        """Send a request and return the socket on which the answer comes."""
+        """Send a request, and return the socket on which the answer comes."""
         ours, theirs = socket.socketpair()
         with theirs, self._lock:
             try:
                 socket.send_fds(self._ensure_running(), [message], [theirs.fileno()])
             except OSError:
-                # It died since it was looked at.
+                # It has died since the check.
                 self._stop()
                 socket.send_fds(self._ensure_running(), [message], [theirs.fileno()])
         return ours
 
     def stop(self) -> None:
-        """End it, and every decoder with it."""
+        """End the process, and every decoder with it."""
         with self._lock:
             self._stop()
 
@@ -103,9 +103,10 @@ def take_in(path: Path, directory: Path, limits: Limits) -> Intake:
     Parameters
     ----------
     path : Path
-        The uploaded file; it is only read.
+        The uploaded file, which is only read.
     directory : Path
-        Where the PNG file is written, under a temporary name. The caller moves or removes it.
+        Where the PNG file is written, under a temporary name; the caller moves or removes it. After an error nothing is
+        left there.
     limits : Limits
 
     Returns
@@ -117,16 +118,18 @@ def take_in(path: Path, directory: Path, limits: Limits) -> Intake:
     UnsupportedFormatError, BrokenFileError, TooLargeError
         As `app.images.decode.decode`; also if decoding takes more seconds or more memory than the limits allow.
     BusyError
-        If no turn came within a minute: only so many are decoded at once.
+        If no decoder becomes free within a minute: only so many files are decoded at once.
     """
     if not _turn.acquire(timeout=WAIT_SECONDS):
-        raise BusyError("Many pictures are being read at the moment: try again in a minute.")
+        raise BusyError("Try again in a minute: many pictures are being read at the moment.")
     try:
         descriptor, name = tempfile.mkstemp(prefix="intake-", suffix=".png", dir=directory.resolve())
         os.close(descriptor)
         stored = Path(name)
         try:
-            return Intake(path=stored, **_decoded(decoding_server.request(path.resolve(), stored, limits), limits))
+            return Intake(
+                path=stored, **_decode(decoding_server.encode_request(path.resolve(), stored, limits), limits)
+            )
         except BaseException:
             stored.unlink(missing_ok=True)
             raise
@@ -134,23 +137,23 @@ def take_in(path: Path, directory: Path, limits: Limits) -> Intake:
         _turn.release()
 
 
-def _decoded(message: bytes, limits: Limits) -> dict[str, Any]:
-    said: dict[str, Any] = {}
-    for _ in range(2):  # once more if the server was killed: nothing is known of the file then
-        said = _answer(message, limits)
-        if said:
+def _decode(message: bytes, limits: Limits) -> dict[str, Any]:
+    report: dict[str, Any] = {}
+    for _ in range(2):  # once more if the server was killed, which says nothing about the file
+        report = _collect_answer(message, limits)
+        if report:
             break
-    if "width" in said:
-        del said["ended"]
-        return said
-    if error := ERRORS.get(said.get("error", "")):
-        raise error(said["message"])
-    if said.get("error") == "MemoryError":
+    if "width" in report:
+        del report["ended"]
+        return report
+    if error := ERRORS.get(report.get("error", "")):
+        raise error(report["message"])
+    if report.get("error") == "MemoryError":
         raise TooLargeError(
             f"Decoding this file takes more than the {limits.memory / (1 << 20):,.0f} MB of memory that it may use: "
             "make it smaller, or save it as an ordinary PNG, JPEG or MP4 (H.264), and upload it again."
         )
-    if said.get("ended") == "late":
+    if report.get("ended") == "late":
         raise TooLargeError(
             f"Decoding this file takes more than the {limits.seconds:g} seconds that it may: make it smaller, a video "
             "shorter, or save it as an ordinary (not progressive) JPEG or MP4 (H.264), and upload it again."
@@ -161,17 +164,17 @@ def _decoded(message: bytes, limits: Limits) -> dict[str, Any]:
     )
 
 
-def _answer(message: bytes, limits: Limits) -> dict[str, Any]:
-    """Collect what the child and the server say; nothing if the server dies."""
-    said: dict[str, Any] = {}
+def _collect_answer(message: bytes, limits: Limits) -> dict[str, Any]:
+    """Collect the reports of the child and of the server; empty if the server dies."""
+    report: dict[str, Any] = {}
     with server.ask(message) as answer:
         answer.settimeout(limits.seconds + GRACE_SECONDS)
         try:
             with answer.makefile("rb") as lines:
                 for line in lines:
-                    said |= json.loads(line)
-                    if "ended" in said:
-                        return said
+                    report |= json.loads(line)
+                    if "ended" in report:
+                        return report
         except TimeoutError:
             server.stop()
             return {"ended": "late"}

@@ -1,11 +1,11 @@
-"""Decoding server: a process that decodes uploads in children that may be killed; the client starts it.
+"""Decoding server: a process that decodes each upload in a child that may be killed; the client starts it.
 
 It imports the decoders once and forks one child for each upload, so that a child costs milliseconds. A child is limited
 in memory and CPU time by the kernel, and killed when its time is over. No process outlives its parent: this one ends
 when its socket closes, and the kernel then kills the children. Linux only.
 
 The socket (file descriptor 0) receives one JSON request per message, with a socket to answer on. The answer is at most
-two lines: what the child says, then how it ended.
+two lines: what the child reports, then how it ended.
 """
 
 import ctypes
@@ -45,8 +45,17 @@ class _Child:
     deadline: float
 
 
-def request(path: Path, destination: Path, limits: Limits) -> bytes:
-    """Ask for ``path`` to be decoded into a PNG file at ``destination``."""
+def encode_request(path: Path, destination: Path, limits: Limits) -> bytes:
+    """Encode a request as one message.
+
+    Parameters
+    ----------
+    path : Path
+        The upload.
+    destination : Path
+        The PNG file to write.
+    limits : Limits
+    """
     return json.dumps({"path": str(path), "destination": str(destination), "limits": asdict(limits)}).encode()
 
 
@@ -62,64 +71,64 @@ def serve(control: socket.socket) -> None:
             for key, _ in ready:
                 if key.fileobj is not control:
                     selector.unregister(key.fileobj)
-                    _end(key.fd, children.pop(key.fd))
+                    _finish_child(key.fd, children.pop(key.fd))
                     continue
                 message, descriptors, _, _ = socket.recv_fds(control, MESSAGE_BYTES, 1)
                 if not message:
                     return
-                watch, child = _start(message, socket.socket(fileno=descriptors[0]))
+                watch, child = _start_child(message, socket.socket(fileno=descriptors[0]))
                 children[watch] = child
                 selector.register(watch, selectors.EVENT_READ)
             for child in children.values():
                 if child.deadline <= time.monotonic():
-                    # It is not reaped yet, so the number cannot be another process's.
+                    # It is not reaped yet, so its number cannot be another process's.
                     os.kill(child.pid, signal.SIGKILL)
 
 
-def _start(message: bytes, answer: socket.socket) -> tuple[int, _Child]:
-    asked = json.loads(message)
-    limits = Limits(**asked["limits"])
+def _start_child(message: bytes, answer: socket.socket) -> tuple[int, _Child]:
+    fields = json.loads(message)
+    limits = Limits(**fields["limits"])
     server = os.getpid()
     pid = os.fork()
     if pid == 0:
         try:
             _confine(server, limits)
-            _say(answer, _work(Path(asked["path"]), Path(asked["destination"]), limits))
+            _send(answer, _decode(Path(fields["path"]), Path(fields["destination"]), limits))
         finally:
             os._exit(0)
     return os.pidfd_open(pid), _Child(pid, answer, time.monotonic() + limits.seconds)
 
 
-def _end(watch: int, child: _Child) -> None:
+def _finish_child(watch: int, child: _Child) -> None:
     os.close(watch)
     _, status = os.waitpid(child.pid, 0)
     late = time.monotonic() >= child.deadline or (os.WIFSIGNALED(status) and os.WTERMSIG(status) == signal.SIGXCPU)
-    _say(child.answer, {"ended": "late" if late else "killed" if os.WIFSIGNALED(status) else "itself"})
+    _send(child.answer, {"ended": "late" if late else "killed" if os.WIFSIGNALED(status) else "itself"})
     child.answer.close()
 
 
-def _say(answer: socket.socket, what: dict[str, Any]) -> None:
+def _send(answer: socket.socket, message: dict[str, Any]) -> None:
     try:
-        answer.sendall(json.dumps(what).encode() + b"\n")
+        answer.sendall(json.dumps(message).encode() + b"\n")
     except BrokenPipeError:
-        return  # nobody waits for it any more
+        return  # nobody waits for the answer any more
 
 
 def _confine(server: int, limits: Limits) -> None:
-    """Limit this process, which is to decode one file."""
+    """Limit this process, which decodes one file."""
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
     if os.getppid() != server:
         os._exit(1)
     mapped = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0]) * PAGE
     resource.setrlimit(resource.RLIMIT_AS, (mapped + limits.memory, mapped + limits.memory))
-    most = (math.ceil(limits.seconds) + 1) * (os.cpu_count() or 1)  # of all threads together
-    resource.setrlimit(resource.RLIMIT_CPU, (most, most + 1))
+    seconds = (math.ceil(limits.seconds) + 1) * (os.cpu_count() or 1)  # of all threads together
+    resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds + 1))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     Image.MAX_IMAGE_PIXELS = limits.pixels
     warnings.simplefilter("error", Image.DecompressionBombWarning)
 
 
-def _work(path: Path, destination: Path, limits: Limits) -> dict[str, Any]:
+def _decode(path: Path, destination: Path, limits: Limits) -> dict[str, Any]:
     try:
         return store(path, destination, limits).properties()
     except AppError as error:
@@ -132,7 +141,7 @@ def _work(path: Path, destination: Path, limits: Limits) -> dict[str, Any]:
 
 
 def _warm_up() -> None:
-    """Load what the libraries put off until it is used, so that not every child has to."""
+    """Load what the libraries load on first use, so that not every child has to."""
     Image.preinit()
     for name in LATE_IMPORTS:
         getattr(imagecodecs, name)
@@ -140,7 +149,7 @@ def _warm_up() -> None:
 
 if __name__ == "__main__":
     logging.disable()  # tifffile logs what is wrong with every broken file
-    # Its parent's Ctrl-C is not for this process: it ends when its parent does.
+    # Ctrl-C is for the parent: this process ends when its parent does.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     _warm_up()
     serve(socket.socket(fileno=sys.stdin.fileno()))

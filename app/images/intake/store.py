@@ -1,4 +1,4 @@
-"""Keeping an upload: its pixels, and nothing else of it, go into a PNG file; a video's frames as a frame stack."""
+"""Storage format of uploads: a PNG file of the pixels alone, without metadata; of a video a frame stack."""
 
 from collections import deque
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -16,9 +16,22 @@ THREADS, WAITING = 2, 4
 
 
 def store(path: Path, destination: Path, limits: Limits) -> Media:
-    """Decode an uploaded file, write it as PNG, and return what is in it.
+    """Decode an uploaded file and write it as PNG.
 
     Of a video, whose file is a frame stack (`app.images.stored_video`), only a few frames are in memory at a time.
+
+    Parameters
+    ----------
+    path : Path
+        The upload.
+    destination : Path
+        The PNG file, which is overwritten.
+    limits : Limits
+
+    Returns
+    -------
+    Media
+        Properties of the picture or video that is stored.
 
     Raises
     ------
@@ -28,12 +41,12 @@ def store(path: Path, destination: Path, limits: Limits) -> Media:
     found = read(path, limits)
     if isinstance(found, Clip):
         return _store_clip(found, destination)
-    destination.write_bytes(to_png(found))
+    destination.write_bytes(encode_picture(found))
     return found
 
 
-def to_png(picture: Decoded) -> bytes:
-    """Write a picture as PNG: grey or RGB, with an alpha channel if a pixel is not opaque, and no metadata."""
+def encode_picture(picture: Decoded) -> bytes:
+    """Encode a picture as PNG: grey or RGB, with an alpha channel if a pixel is not opaque, and without metadata."""
     height, width, channels = picture.pixels.shape
     writer = PngWriter(width, height, channels + (picture.alpha is not None), picture.depth)
     rows = _rows(width)

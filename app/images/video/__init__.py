@@ -1,1 +1,1 @@
-"""Videos as files: encoders that frames are streamed to, the way back, and the video cube."""
+"""Video files: encoders to which frames are streamed, a reader, and the video cube."""

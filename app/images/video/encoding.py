@@ -1,4 +1,4 @@
-"""Several files of one video, written at once: every encoder works in a thread of its own."""
+"""Parallel encoding of several files of one video: every encoder works in a thread of its own."""
 
 from collections import deque
 from collections.abc import Callable, Sequence
@@ -8,17 +8,17 @@ from typing import Self
 
 from app.images.video.writers import Frame, VideoWriter
 
-WAITING = 2  # frames that wait for an encoder before their maker does
+WAITING = 2  # frames that wait for an encoder before `write` does
 PATIENCE = 0.1  # seconds between two calls of `progress` while encoders finish
 
 
 class Encoding:
-    """Hands every frame to several writers; leaving it ends their threads and removes what is not finished.
+    """Context manager that hands every frame to several writers; leaving it removes unfinished files.
 
     Parameters
     ----------
     writers : sequence of VideoWriter
-        It closes them.
+        They are closed on leaving.
     """
 
     def __init__(self, writers: Sequence[VideoWriter]) -> None:
@@ -27,14 +27,20 @@ class Encoding:
         self._pending: list[deque[Future[None]]] = [deque() for _ in writers]
 
     def write(self, frame: Frame) -> None:
-        """Queue a frame, (H, W, C) uint8, which the caller does not change any more; waits while queues are full."""
+        """Queue a frame, (H, W, C) uint8, which the caller must not change afterwards; wait while queues are full."""
         for writer, thread, pending in zip(self._writers, self._threads, self._pending, strict=True):
             if len(pending) > WAITING:
                 pending.popleft().result()
             pending.append(thread.submit(writer.write, frame))
 
     def finish(self, progress: Callable[[float], None]) -> None:
-        """Wait until every file is complete; ``progress`` is called now and then with the part, 0–1, that is done."""
+        """Wait until every file is complete; ``progress`` is called with the share that is done, 0 to 1.
+
+        Raises
+        ------
+        OSError
+            If a file cannot be written; also what ``progress`` raises.
+        """
         for writer, thread, pending in zip(self._writers, self._threads, self._pending, strict=True):
             pending.append(thread.submit(writer.finish))
         jobs = [job for pending in self._pending for job in pending]

@@ -1,4 +1,4 @@
-"""Frames of the videos that `app.images.video.writers` has written."""
+"""Reader of the videos that `app.images.video.writers` wrote."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -9,12 +9,12 @@ from av.video.reformatter import ColorRange, Interpolation
 
 from app.images.video.writers import Frame, view_rows
 
-# Of chroma between its places; by itself the library repeats it, and is a level too dark.
+# Without these the library repeats chroma instead of interpolating it, and is a level too dark.
 INTERPOLATED = Interpolation.BILINEAR | Interpolation.ACCURATE_RND | Interpolation.FULL_CHR_H_INT
 
 
 def read_video(path: Path) -> Iterator[Frame]:
-    """Frames (H, W, C) uint8, one by one; C is 1 for a WebM video written from one channel, otherwise 3."""
+    """Yield the frames, (H, W, C) uint8; C is 1 for a WebM video written from one channel, otherwise 3."""
     with av.open(path) as container:
         for frame in container.decode(video=0):
             if frame.format.name == "yuv420p" and frame.color_range == ColorRange.JPEG:
@@ -24,5 +24,5 @@ def read_video(path: Path) -> Iterator[Frame]:
 
 
 def read_first_frame(path: Path) -> Frame:
-    """The first frame, (H, W, C) uint8, decoded alone."""
+    """Read the first frame, (H, W, C) uint8, without decoding the others."""
     return next(read_video(path))

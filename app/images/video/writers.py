@@ -1,4 +1,4 @@
-"""Videos as files, written frame by frame: WebM (VP9), MP4 (H.264) and animated WebP.
+"""Video encoders, fed frame by frame: WebM (VP9), MP4 (H.264) and animated WebP.
 
 WebM is exact: VP9 without loss, of red, green and blue as they are (its profile 1), so that nothing is rounded between
 colour spaces. A video of one channel becomes the luma, in full range, of a video without colour. Only a video of more
@@ -26,11 +26,11 @@ from numpy.typing import NDArray
 Frame = NDArray[np.uint8]
 Kind = Literal["webm", "mp4", "webp"]
 
-MOST_LOSSLESS = 1 << 27  # bytes of all frames; their file has up to 0.8 as many if the video is noise
+MOST_LOSSLESS = 1 << 27  # bytes of all frames; of noise the file has up to 0.8 as many
 LARGEST_DENOMINATOR = 1001  # of a rate, as in 24000/1001
 PREVIEW_SIDE, PREVIEW_FRAMES = 256, 100  # at most
 NO_CHROMA = 128
-IDENTITY = 0  # the matrix of what is red, green and blue; PyAV has no name for it
+IDENTITY = 0  # the matrix of RGB; PyAV has no name for it
 RGB_PLANES = (1, 2, 0)  # the channels in the order of the planes
 MUXERS: dict[Kind, dict[str, str]] = {
     "webm": {"fflags": "+bitexact"},
@@ -40,7 +40,7 @@ MUXERS: dict[Kind, dict[str, str]] = {
 
 
 def rate_as_fraction(rate: float) -> Fraction:
-    """Frames a second as the fraction that was meant.
+    """Convert frames a second to the fraction behind the rounded number, as 24000/1001 behind 23.976.
 
     Examples
     --------
@@ -51,7 +51,7 @@ def rate_as_fraction(rate: float) -> Fraction:
 
 
 def name_repeated_edges(width: int, height: int) -> str:
-    """What the MP4 of a video of this size shows twice; nothing if its sides are even.
+    """Name the edges that the MP4 of a video of this size repeats; an empty text if both sides are even.
 
     Examples
     --------
@@ -62,17 +62,21 @@ def name_repeated_edges(width: int, height: int) -> str:
 
 
 class VideoWriter:
-    """A video's file that grows frame by frame; the memory it takes does not.
+    """A writer of one video file, whose memory does not grow with the number of frames.
 
     Parameters
     ----------
     path : Path
-        Where; its name may end as it likes.
+        The file; its name may have any suffix.
     kind : {"webm", "mp4", "webp"}
-        WebP is a preview of at most 256 pixels a side and 100 frames: of a long video it shows every second, third, …
-        for as much longer.
-    width, height, channels, count : int
-        Of the video: 1 channel is grey, 3 are RGB; ``count`` is the number of frames.
+        WebP is a preview of at most 256 pixels a side and 100 frames: of a longer video it has every second, third, …
+        frame, each shown two, three, … times as long.
+    width, height : int
+        Of the video's frames.
+    channels : int
+        1 (grey) or 3 (RGB).
+    count : int
+        Number of frames.
     rate : float
         Frames a second.
 
@@ -85,17 +89,17 @@ class VideoWriter:
 
     Notes
     -----
-    One thread at a time may call it. It is left by `close`.
+    Only one thread at a time may call it. Call `close` at the end, after errors too.
     """
 
     def __init__(
         self, path: Path, kind: Kind, *, width: int, height: int, channels: int, count: int, rate: float
     ) -> None:
         self.path = path
-        self.width, self.height = _size(kind, width, height)
+        self.width, self.height = _compute_size(kind, width, height)
         self._every = -(-count // PREVIEW_FRAMES) if kind == "webp" else 1
         self.frames, self.rate = -(-count // self._every), rate / self._every
-        self._coding = _coding(kind, channels, width * height * channels * count)
+        self._coding = _choose_coding(kind, channels, width * height * channels * count)
         self._taken, self._finished = 0, False
         self._container = av.open(path, "w", format=kind, options=MUXERS[kind])
         self._stream = self._container.add_stream(self._coding.codec, rate_as_fraction(rate) / self._every)
@@ -107,7 +111,7 @@ class VideoWriter:
         _tag(encoder, self._coding)
 
     def write(self, frame: Frame) -> None:
-        """Add the next frame, (H, W, C) uint8. It is not kept."""
+        """Encode the next frame, (H, W, C) uint8, which is not kept."""
         if self._taken % self._every == 0:
             picture = self._coding.picture(frame, self.width, self.height, self._coding)
             _tag(picture, self._coding)
@@ -115,27 +119,32 @@ class VideoWriter:
         self._taken += 1
 
     def finish(self) -> None:
-        """Write what the encoder still holds, and complete the file."""
+        """Flush the encoder and complete the file."""
         self._container.mux(self._stream.encode(None))
         self._container.close()
         self._finished = True
 
     def close(self) -> None:
-        """Let go of the encoder, and remove a file that is not complete."""
+        """Release the encoder, and remove an incomplete file."""
         self._container.close()
         if not self._finished:
             self.path.unlink(missing_ok=True)
 
 
 def write_video(frames: Iterable[Frame], path: Path, kind: Kind, *, count: int, rate: float) -> None:
-    """Write a video's frames, one in memory at a time.
+    """Write a video file, with one frame in memory at a time.
 
     Parameters
     ----------
     frames : iterable of ndarray of uint8, shape (H, W, C)
         At least one.
     path, kind, count, rate
-        See `VideoWriter`.
+        As of `VideoWriter`.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written; nothing is left of it.
     """
     left = iter(frames)
     first = next(left)
@@ -151,12 +160,12 @@ def write_video(frames: Iterable[Frame], path: Path, kind: Kind, *, count: int, 
 
 
 def view_rows(plane: VideoPlane) -> Frame:
-    """The bytes of a frame's plane by rows, which are longer than the picture is wide."""
+    """View the bytes of a frame's plane as rows, which may be longer than the picture is wide."""
     return np.frombuffer(memoryview(plane), np.uint8).reshape(-1, plane.line_size)
 
 
 class _Coding(NamedTuple):
-    """An encoder, and what the numbers it is given mean."""
+    """An encoder with its options, and the meaning of its numbers."""
 
     codec: Literal["libvpx-vp9", "libx264", "libwebp_anim"]
     pixels: str
@@ -167,14 +176,14 @@ class _Coding(NamedTuple):
     threads: int = 1
 
 
-def _of_rgb_planes(frame: Frame, width: int, height: int, coding: _Coding) -> av.VideoFrame:
+def _to_rgb_planes(frame: Frame, width: int, height: int, coding: _Coding) -> av.VideoFrame:
     picture = av.VideoFrame(width, height, coding.pixels)
     for plane, channel in zip(picture.planes, RGB_PLANES, strict=True):
         view_rows(plane)[:height, :width] = frame[:, :, channel]
     return picture
 
 
-def _of_luma(frame: Frame, width: int, height: int, coding: _Coding) -> av.VideoFrame:
+def _to_luma(frame: Frame, width: int, height: int, coding: _Coding) -> av.VideoFrame:
     picture = av.VideoFrame(width, height, coding.pixels)
     view_rows(picture.planes[0])[:height, :width] = frame[:, :, 0]
     for plane in picture.planes[1:]:
@@ -182,7 +191,7 @@ def _of_luma(frame: Frame, width: int, height: int, coding: _Coding) -> av.Video
     return picture
 
 
-def _converted(frame: Frame, width: int, height: int, coding: _Coding) -> av.VideoFrame:
+def _convert(frame: Frame, width: int, height: int, coding: _Coding) -> av.VideoFrame:
     below, right = max(0, height - len(frame)), max(0, width - frame.shape[1])
     rgb = np.pad(np.broadcast_to(frame, (*frame.shape[:2], 3)), ((0, below), (0, right), (0, 0)), "edge")
     return av.VideoFrame.from_ndarray(rgb, "rgb24").reformat(
@@ -204,19 +213,19 @@ _VP9 = {
     "tile-columns": "2",  # up to four, of 256 pixels at least, which a player decodes at the same time
 }
 _LOSSLESS, _FINE = {**_VP9, "lossless": "1"}, {**_VP9, "crf": "6", "b": "0"}
-# With its macroblock tree, single-threaded or not, x264 gives other bytes from run to run (not without assembler code).
+# With its macroblock tree, single-threaded or not, x264's bytes differ from run to run (not without assembler code).
 _H264 = {"preset": "fast", "tune": "psnr", "crf": "10", "mbtree": "0"}
 _WEBP = {"quality": "75", "compression_level": "2"}
 
-LOSSLESS = _Coding("libvpx-vp9", "gbrp", _LOSSLESS, _of_rgb_planes, IDENTITY, ColorRange.JPEG, 2)
-LOSSLESS_GREY = _Coding("libvpx-vp9", "yuv420p", _LOSSLESS, _of_luma, range=ColorRange.JPEG, threads=2)
-FINE = _Coding("libvpx-vp9", "yuv444p", _FINE, _converted, threads=2)
-FINE_GREY = _Coding("libvpx-vp9", "yuv420p", _FINE, _of_luma, range=ColorRange.JPEG, threads=2)
-MP4 = _Coding("libx264", "yuv420p", _H264, _converted)
-PREVIEW = _Coding("libwebp_anim", "bgra", _WEBP, _converted, range=ColorRange.JPEG)
+LOSSLESS = _Coding("libvpx-vp9", "gbrp", _LOSSLESS, _to_rgb_planes, IDENTITY, ColorRange.JPEG, 2)
+LOSSLESS_GREY = _Coding("libvpx-vp9", "yuv420p", _LOSSLESS, _to_luma, range=ColorRange.JPEG, threads=2)
+FINE = _Coding("libvpx-vp9", "yuv444p", _FINE, _convert, threads=2)
+FINE_GREY = _Coding("libvpx-vp9", "yuv420p", _FINE, _to_luma, range=ColorRange.JPEG, threads=2)
+MP4 = _Coding("libx264", "yuv420p", _H264, _convert)
+PREVIEW = _Coding("libwebp_anim", "bgra", _WEBP, _convert, range=ColorRange.JPEG)
 
 
-def _coding(kind: Kind, channels: int, size: int) -> _Coding:
+def _choose_coding(kind: Kind, channels: int, size: int) -> _Coding:
     if kind != "webm":
         return MP4 if kind == "mp4" else PREVIEW
     if channels == 1:
@@ -224,7 +233,7 @@ def _coding(kind: Kind, channels: int, size: int) -> _Coding:
     return LOSSLESS if size <= MOST_LOSSLESS else FINE
 
 
-def _size(kind: Kind, width: int, height: int) -> tuple[int, int]:
+def _compute_size(kind: Kind, width: int, height: int) -> tuple[int, int]:
     if kind == "mp4":
         return width + width % 2, height + height % 2
     scale = min(1.0, PREVIEW_SIDE / max(width, height)) if kind == "webp" else 1.0
@@ -232,6 +241,6 @@ def _size(kind: Kind, width: int, height: int) -> tuple[int, int]:
 
 
 def _tag(target: av.VideoFrame | av.VideoCodecContext, coding: _Coding) -> None:
-    """Say what the numbers mean: sRGB, or luma and chroma made from it."""
+    """Tag what the numbers mean: sRGB, or luma and chroma made from it."""
     target.colorspace, target.color_range = coding.matrix, coding.range
     target.color_primaries, target.color_trc = ColorPrimaries.BT709, ColorTrc.IEC61966_2_1

@@ -134,6 +134,6 @@ def _written(
 
 
 def _picture_of(cube: VideoCube, name: str, title: str) -> Picture:
-    picture = cube.picture()
+    picture = cube.draw()
     height, width, _ = picture.shape
     return Picture(name, title, width, height, encode_png(picture))

@@ -117,7 +117,7 @@ def cells_cube(painter: Painter, shape: tuple[int, int, int], context: Context) 
         else:
             painted[:] = painter(Window(0, height, 0, width))(number)
         cube.add(painted)
-    picture = cube.picture()
+    picture = cube.draw()
     return Picture(
         "cells", "Cells over time, coloured by source", picture.shape[1], picture.shape[0], encode_png(picture)
     )

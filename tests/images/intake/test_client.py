@@ -111,7 +111,7 @@ def test_the_server_forks_from_a_single_thread(directory: Path) -> None:
 def test_those_who_wait_too_long_for_their_turn_are_told(directory: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "_turn", threading.BoundedSemaphore(1))
     monkeypatch.setattr(module, "WAIT_SECONDS", 0.01)
-    with module._turn, pytest.raises(BusyError, match="try again"):
+    with module._turn, pytest.raises(BusyError, match="Try again"):
         take_in(SAMPLES / "tiles02.png", directory, Limits())
 
 

@@ -13,7 +13,7 @@ def picture(film: np.ndarray) -> np.ndarray:
     cube = VideoCube(width, height, channels, count)
     for frame in film:
         cube.add(frame)
-    return cube.picture()
+    return cube.draw()
 
 
 def block(film: np.ndarray) -> np.ndarray:
