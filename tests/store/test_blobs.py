@@ -95,8 +95,17 @@ def test_what_is_put_is_on_the_disk_before_it_has_its_name(blobs: FileBlobs, mon
     """First the content, then the name: a power cut leaves no name without its content."""
     events: list[str] = []
     sync, replace = os.fsync, Path.replace
-    monkeypatch.setattr(os, "fsync", lambda descriptor: events.append("sync") or sync(descriptor))
-    monkeypatch.setattr(Path, "replace", lambda path, target: events.append("name") or replace(path, target))
+
+    def note_sync(descriptor: int) -> None:
+        events.append("sync")
+        sync(descriptor)
+
+    def note_name(path: Path, target: Path) -> Path:
+        events.append("name")
+        return replace(path, target)
+
+    monkeypatch.setattr(os, "fsync", note_sync)
+    monkeypatch.setattr(Path, "replace", note_name)
     blobs.put(b"texture")
     assert events == ["sync", "sync", "name", "sync"]  # as it is written, as it is moved in, and its directory
 

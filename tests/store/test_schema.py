@@ -1,7 +1,8 @@
 """The schema: what the tables demand, what they are looked up by, and how a connection to SQLite is set up."""
 
 import sqlite3
-from typing import Any
+import time
+from typing import Any, cast
 
 import pytest
 import sqlalchemy as sa
@@ -82,15 +83,15 @@ class Connection:
 def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     """A clock that only sleeping moves; the list holds its time."""
     now = [100.0]
-    monkeypatch.setattr(schema.time, "monotonic", lambda: now[0])
-    monkeypatch.setattr(schema.time, "sleep", lambda seconds: now.__setitem__(0, now[0] + seconds))
+    monkeypatch.setattr(time, "monotonic", lambda: now[0])
+    monkeypatch.setattr(time, "sleep", lambda seconds: now.__setitem__(0, now[0] + seconds))
     return now
 
 
 @pytest.mark.parametrize("failures", [0, 1, 200])
 def test_the_switch_to_wal_is_tried_until_no_other_process_attempts_it(clock: list[float], failures: int) -> None:
     connection = Connection(failures)
-    schema._set_up_sqlite(connection, None)
+    schema._set_up_sqlite(cast(sqlite3.Connection, connection), None)
     assert connection.executed == ["PRAGMA journal_mode=WAL", "PRAGMA synchronous=FULL", "PRAGMA foreign_keys=ON"]
     assert connection.isolation_level is None
     assert clock[0] == pytest.approx(100 + failures * 0.01)
@@ -98,7 +99,7 @@ def test_the_switch_to_wal_is_tried_until_no_other_process_attempts_it(clock: li
 
 def test_the_switch_to_wal_is_given_up_after_the_busy_time(clock: list[float]) -> None:
     with pytest.raises(sqlite3.OperationalError, match="locked"):
-        schema._set_up_sqlite(Connection(float("inf")), None)
+        schema._set_up_sqlite(cast(sqlite3.Connection, Connection(float("inf"))), None)
     assert clock[0] - 100 == pytest.approx(schema.BUSY_SECONDS, abs=0.02)
 
 

@@ -11,7 +11,7 @@ from sqlalchemy.exc import IntegrityError
 
 from app.errors import ConflictError
 from app.experiments.model import Sample, Status
-from app.store import sql
+from app.store import schema, sql
 from app.store.sql import SqlStore
 from tests.store.records import START, a_sample, an_experiment, an_output, succeeded
 
@@ -66,11 +66,10 @@ def test_a_sample_that_becomes_used_meanwhile_stays_and_the_others_go(
     for sample in samples:
         store.add_sample(sample)
     order: list[str] = []
-    writing = sql.writing
 
     @contextmanager
     def conflicting(engine: Any) -> Iterator[sa.Connection]:
-        with writing(engine) as connection:
+        with schema.writing(engine) as connection:
             execute = connection.execute
 
             def refusing(statement: Any, *arguments: Any) -> Any:
