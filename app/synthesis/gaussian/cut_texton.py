@@ -109,6 +109,7 @@ def cut_texton(
     axes = colours.axes[:used]
     p = np.stack([sum(np.float32(part) * plane for part, plane in zip(axis, p, strict=True)) for axis in axes])
     kernel = _root(_spectra(p, threads), p.shape[1:], cut, threads, progress)
+    _report(progress, 1.0)
     factor = _transport(_covariance(kernel, height * width), np.diag(colours.variances[:used]))
     turned = np.einsum("ab,bjyx->jayx", axes.T @ factor, kernel)
     spots = tuple(Spot(planes.astype(np.float32), mean, height, width) for planes in turned)

@@ -74,6 +74,8 @@ def texton(h: Real, threads: int = 1, progress: Progress | None = None) -> Real:
         spectrum *= turn
         spectrum[0, 0] = 0
         plane[:] = np.fft.fftshift(scipy.fft.irfft2(spectrum, s=plane.shape, overwrite_x=True, workers=threads))
+    if progress:
+        progress("texton", 1.0)
     return p.transpose(1, 2, 0)
 
 

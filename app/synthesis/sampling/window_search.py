@@ -105,6 +105,7 @@ class WindowSearch:
             squares = np.square(s).sum(2)
             tile[: pixels * channels, : len(members)] = np.nan_to_num(s).reshape(len(members), -1).T
             tile[pixels * channels :, : len(members)] = np.nan_to_num(squares, nan=OUTSIDE).T
+        progress(1.0)
         return tiles
 
     def __len__(self) -> int:
