@@ -3,6 +3,7 @@
 PYTHON ?= python3
 PYTHON_313 ?= python3.13
 PORT ?= 8000
+FAMILY ?= gaussian
 VENV := .venv
 BIN := $(VENV)/bin
 # Debian's name first; CHROMIUM=/path/to/another takes that one.
@@ -12,7 +13,7 @@ export PIP_NO_INPUT := 1
 
 .DEFAULT_GOAL := help
 .PHONY: help setup run dev check fix test lint lint-python lint-templates lint-js types test-js test-fast \
-	test-313 test-without-browser programs chaos load bench lock dist readme-picture clean
+	test-313 test-without-browser programs chaos load bench new-method lock dist readme-picture clean
 
 help: ## list these targets
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "  make %-15s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -77,6 +78,9 @@ lint-js: node_modules/.ready
 
 test-js: node_modules/.ready
 	$(BIN)/node --test --test-reporter=dot 'tests/js/*.test.js'
+
+new-method: $(VENV)/.ready-dev ## the files of a new method to start from: NAME=my-method, FAMILY=sampling (default: gaussian)
+	@$(BIN)/python scripts/new_method.py "$(NAME)" --family "$(FAMILY)"
 
 chaos: programs ## only the tests that kill processes
 	$(BIN)/pytest -m chaos

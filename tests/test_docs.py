@@ -5,6 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from app.gallery.groups import groups
+from app.methods.registry import METHODS
 from app.settings import ROOT, Settings
 
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -76,3 +78,15 @@ def test_every_decision_stands_in_the_index_with_its_title_and_date() -> None:
 def test_a_decision_tells_its_context_what_was_decided_and_what_follows(decision: Path) -> None:
     headings = re.findall(r"^## (.+)$", decision.read_text(encoding="utf-8"), re.MULTILINE)
     assert headings == ["Context", "Decision", "Consequences"]
+
+
+def test_the_table_of_the_readme_has_every_method_once() -> None:
+    table = re.search(r"^\| method \| what it makes \|\n\|---\|---\|\n((?:\|.*\n)+)", README, re.MULTILINE)
+    assert table
+    cells = [row.split("|")[1] for row in table[1].splitlines()]
+    assert sorted(re.findall(r"`([\w-]+)`", "".join(cells))) == sorted(METHODS)
+
+
+def test_every_method_stands_in_a_group_of_its_own_choice() -> None:
+    """The group “More” takes what was forgotten."""
+    assert "More" not in [group.title for group in groups()]
