@@ -1,6 +1,7 @@
 """The scaffold of a new method: what it makes passes the tests that all methods pass, in a copy of the checkout."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -82,6 +83,12 @@ def test_the_method_is_there_for_whoever_runs_the_command(scaffolded: Path) -> N
     done = in_copy(scaffolded, "-c", program, "synthesize", photograph, "texture.png", *arguments)
     assert done.returncode == 0, done.stderr
     (scaffolded / "texture.png").unlink()
+
+
+def test_contributing_lists_what_is_made() -> None:
+    rows = re.findall(r"^\| (`.+`) \| .+ \| made \|$", (ROOT / "CONTRIBUTING.md").read_text(), re.MULTILINE)
+    named = {path for row in rows for path in re.findall("`([^`]+)`", row)}
+    assert {path.replace("<family>", FAMILY).replace("<name>", MODULE) for path in named} == MADE | CHANGED
 
 
 def test_its_files_pass_the_lint(scaffolded: Path) -> None:
