@@ -125,7 +125,7 @@ WORK = {
         ("sample", "noise", "iteration 1", "iteration 2"), 100, 0.34,
     ),
     "efros_leung": Reports(
-        lambda p: efros_leung(LARGE, 110, 100, half_patch=1, progress=p), ("order", "patches", "growth"), 226, 0.45
+        lambda p: efros_leung(LARGE, 110, 100, half_patch=1, progress=p), ("order", "patches", "growth"), 228, 0.45
     ),
     "WindowSearch": Reports(
         in_team(lambda t, p: WindowSearch(LARGE, 1, t, lambda part: p("patches", part))), ("patches",), 4, 0.45

@@ -5,9 +5,10 @@ import pytest
 from scipy import stats
 
 from app.synthesis.fourier.periodic import periodic_component
+from app.synthesis.fourier.spectral import half_spectrum
 from app.synthesis.fourier.spot import extend_spot
-from app.synthesis.gaussian.adsn import adsn
-from app.synthesis.gaussian.rpn import rpn
+from app.synthesis.gaussian.adsn import adsn, white_noise
+from app.synthesis.gaussian.rpn import random_phase, rpn
 from tests.synthesis.images import image
 
 LIKELY = 1e-3  # a seed is pinned; a p-value below this says that the law is wrong
@@ -82,3 +83,25 @@ def test_of_two_sinusoids_it_favours_one():
     # R₁² / (R₁² + R₂²) of two independent exponentials is uniform: one is at least thrice the other half of the time
     share = draws[:, 0] ** 2 / (draws**2).sum(1)
     assert stats.kstest(share, stats.uniform.cdf).pvalue > LIKELY
+
+
+def test_the_rayleigh_modulus_leaves_the_phase_alone_and_has_unit_mean_square():
+    phase, noise = half_spectrum(random_phase, 256, 256, seed=3), half_spectrum(white_noise, 256, 256, seed=3)
+    np.testing.assert_allclose(np.abs(np.angle(noise / phase)), 0, atol=1e-5)
+    modulus = np.abs(noise[:, 1:-1]).ravel()
+    assert stats.kstest(modulus, stats.rayleigh(scale=np.sqrt(0.5)).cdf).pvalue > LIKELY
+    # R² is exponential: mean 1, standard deviation 1
+    assert abs((modulus**2).mean() - 1) < 4 / np.sqrt(modulus.size)
+    angle = np.angle(phase[:, 1:-1]).ravel()
+    assert abs(np.corrcoef(modulus, np.cos(angle))[0, 1]) < 4 / np.sqrt(modulus.size)
+
+
+def test_modulus_at_a_self_conjugate_frequency_is_that_of_a_real_normal():
+    values = [half_spectrum(white_noise, 2, 2, seed)[1, 1].real for seed in range(1000)]
+    assert stats.kstest(values, stats.norm.cdf).pvalue > LIKELY
+
+
+def test_with_rayleigh_moduli_it_is_a_gaussian_white_noise():
+    white = np.fft.irfft2(half_spectrum(white_noise, 128, 129, seed=4), s=(128, 129)) * np.sqrt(128 * 129)
+    white -= white.mean()
+    assert stats.kstest(white.ravel(), stats.norm.cdf).pvalue > LIKELY

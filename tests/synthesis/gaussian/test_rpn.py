@@ -6,15 +6,18 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy import stats
 
 from app.synthesis.fourier.periodic import periodic_component, smooth_component
+from app.synthesis.fourier.spectral import half_spectrum
 from app.synthesis.fourier.spot import centre, extend_spot
 from app.synthesis.gaussian.adsn import adsn
-from app.synthesis.gaussian.rpn import rpn
+from app.synthesis.gaussian.rpn import random_phase, rpn
 from tests.profiles import examples
 from tests.synthesis.images import image
 from tests.synthesis.stopping import stops_at
 
+LIKELY = 1e-3  # a seed is pinned; a p-value below this says that the law is wrong
 SIZES = [(1, 1), (1, 12), (12, 1), (2, 3), (16, 16), (16, 17), (17, 16), (37, 41), (130, 67)]
 
 
@@ -175,3 +178,35 @@ def test_the_progress_of_every_stage_rises_to_one():
     for parts in stages.values():
         assert parts == sorted(parts)
         assert parts[-1] == 1
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_the_phase_is_zero_at_the_origin_and_zero_or_pi_where_a_frequency_is_its_own_opposite(size):
+    spectrum = half_spectrum(random_phase, *size, seed=5)
+    np.testing.assert_allclose(np.abs(spectrum), 1, rtol=1e-6)
+    assert spectrum[0, 0] == 1
+    rows = {0, size[0] // 2} if size[0] % 2 == 0 else {0}
+    columns = {0, size[1] // 2} if size[1] % 2 == 0 else {0}
+    assert all(spectrum[k, m] in (1, -1) for k in rows for m in columns)
+
+
+def test_the_signs_at_self_conjugate_frequencies_are_fair():
+    signs = [half_spectrum(random_phase, 4, 4, seed)[[2, 0, 2], [0, 2, 2]].real.sum() for seed in range(300)]
+    # 900 fair coins have a standard deviation of 30
+    assert abs(sum(signs)) < 4 * 30
+
+
+def test_the_phase_is_uniform():
+    phase = np.angle(half_spectrum(random_phase, 256, 256, seed=1)[:, 1:-1]).ravel()
+    assert stats.kstest(phase, stats.uniform(-np.pi, 2 * np.pi).cdf).pvalue > LIKELY
+
+
+def test_neighbouring_phases_are_independent():
+    values = half_spectrum(random_phase, 256, 256, seed=2)[:, 1:-1]
+    for other in (np.roll(values, 1, 0), np.roll(values, 1, 1), np.roll(values, 32, 1), values.conj()[::-1]):
+        # a mean of n independent points of the unit circle has a modulus of about n^(-1/2)
+        assert abs((values * other.conj()).mean()) < 4 / np.sqrt(values.size)
+
+
+def test_every_seed_draws_anew():
+    assert len({half_spectrum(random_phase, 8, 8, seed).tobytes() for seed in (0, 1, 2, 2**32, 2**53 - 1)}) == 5

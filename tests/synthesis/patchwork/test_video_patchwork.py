@@ -4,12 +4,10 @@ import numpy as np
 import pytest
 
 from app.synthesis.parallel import Team, Work
-from app.synthesis.patchwork.cells import Window
 from app.synthesis.patchwork.jittered_cells import jittered_cells
 from app.synthesis.patchwork.patchwork import Patchwork
 from app.synthesis.patchwork.transfer import transfer
 from app.synthesis.patchwork.transitions import Transitions
-from app.synthesis.patchwork.video_cells import FixedCells
 from app.synthesis.patchwork.video_patchwork import PaddedClip, VideoPatchwork, frames_in_order
 from tests.synthesis.films import noise, size_of, steps, still, waves
 from tests.synthesis.stopping import StopError
@@ -118,19 +116,6 @@ def test_tileable_frames_have_no_seam(axis):
     tiled, cut = (steps(made(waves(), laid(tileable=tileable), frames=6), axis) for tileable in (True, False))
     assert tiled[-1] < 1.2 * tiled[:-1].max()
     assert cut[-1] > 1.5 * cut[:-1].max()
-
-
-def test_cells_are_painted_alike_in_any_window():
-    film, cells = noise(), laid()
-    sources, transitions = cells.sources(SIZE, SIZE, 3), in_time(film, cells)
-    whole, right = (
-        FixedCells(cells, window, sources, transitions, film.shape[:3]).paint(7)
-        for window in (cells.plane, Window(0, SIZE, SIZE - 1, SIZE))
-    )
-    assert np.abs(whole[:, -1:] - right).max() < 1
-    y, x = next((y, x) for y, x in cells.centres if 0 <= y < SIZE and 0 <= x < SIZE)
-    cell = cells.cell[[tuple(centre) for centre in cells.centres].index((y, x))]
-    assert whole[y, x, :2] == pytest.approx(255 * sources[cell, ::-1] / (SIZE - 1), abs=1)
 
 
 @pytest.mark.parametrize("threads", [1, 3])

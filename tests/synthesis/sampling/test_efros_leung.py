@@ -8,39 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import ndimage
 
-from app.synthesis.parallel import Team
 from app.synthesis.sampling.efros_leung import border_share, efros_leung, growth_order, verbatim_share
-from app.synthesis.sampling.window_search import WindowSearch, gaussian_window
+from app.synthesis.sampling.window_search import gaussian_window
 from tests.profiles import examples
-
-
-def sample(height=20, width=23, channels=3, seed=0):
-    """Coarse grain of few levels, so that there are near matches and exact ones."""
-    rng = np.random.default_rng(seed)
-    coarse = np.kron(rng.integers(0, 4, (-(-height // 3), -(-width // 4), 1)) * 60, np.ones((3, 4, 1)))
-    return (coarse[:height, :width] + rng.integers(0, 6, (height, width, channels))).astype(np.float32)
-
-
-def far_from_zero():
-    return sample() / 60 + 60000
-
-
-def of_two_worlds():
-    """Fine grain on black and on white: whatever is taken as zero, the squares of one of them are large."""
-    h = sample()
-    h[:, 12:] += 65535 - 300
-    return h
-
-
-def distances(h, window, known, weights):
-    """Of one window, known in part, to that around every pixel of the sample, in double precision; else infinite."""
-    n, (height, width) = len(window) // 2, h.shape[:2]
-    framed = np.pad(h.astype(np.float64), ((n, n), (n, n), (0, 0)), constant_values=np.nan)
-    total = np.zeros((height, width))
-    for i, j in np.argwhere(known):
-        difference = framed[i : i + height, j : j + width] - window[i, j]
-        total += weights[i, j] * np.square(difference).sum(2)
-    return np.nan_to_num(total, nan=np.inf)
+from tests.synthesis.sampling.grain import distances, far_from_zero, of_two_worlds, sample
 
 
 @pytest.mark.parametrize("tolerance", [0, 0.1, 0.5])
@@ -103,36 +74,6 @@ def test_pixels_with_equally_many_known_neighbours_come_in_random_order():
     one, other = (growth_order(31, 31, 2, np.random.default_rng(seed)) for seed in (0, 1))
     assert (one[:9] == other[:9]).all()
     assert (one != other).mean() > 0.9
-
-
-def test_the_window_is_a_gaussian_of_a_deviation_of_its_side_over_6_4():
-    for n in (1, 4, 11):
-        y, x = np.mgrid[-n : n + 1, -n : n + 1]
-        g = np.exp(-(x**2 + y**2) / (2 * ((2 * n + 1) / 6.4) ** 2))
-        np.testing.assert_allclose(gaussian_window(n), g / g.sum(), rtol=1e-12)
-
-
-def test_a_patch_is_drawn_uniformly_among_all_positions_within_the_tolerance():
-    """Equidistant chances meet every position that qualifies equally often, however often its patch occurs."""
-    h = sample(12, 14, 1)
-    h[:, 7:] = h[:, :7]  # most patches occur twice
-    n, tolerance = 1, 1
-    window, known = h[4:7, 3:6] + 0.5, np.array([[0, 1, 0], [0, 0, 0], [0, 0, 0]], bool)
-    d = distances(h, window, known, gaussian_window(n))
-    near = np.flatnonzero(d <= (1 + tolerance) * d.min())
-    assert 4 < len(near) < h.size / 4
-    chances = (np.arange(3 * len(near)) + 0.5) / (3 * len(near))
-    with Team(1) as team:
-        values, masks = (np.repeat(a.reshape(1, 9, -1), len(chances), 0) for a in (window, known))
-        drawn = WindowSearch(h, n, team, lambda part: None).draw(values, masks[:, :, 0], tolerance, chances)
-    assert (np.bincount(drawn, minlength=h.size)[near] == 3).all()
-
-
-def test_equal_patches_are_searched_once():
-    stripes = np.tile(np.arange(4, dtype=np.float32), (30, 5))[:, :, None]
-    with Team(1) as team:
-        # 4 inside; within one pixel of the border they differ: above, below and not, times left, right and not
-        assert len(WindowSearch(stripes, 1, team, lambda part: None)) == 3 * (4 + 2)
 
 
 @pytest.mark.parametrize("h", [sample(), np.full((20, 20, 3), 7, np.float32)], ids=["grain", "constant"])
