@@ -4,7 +4,7 @@ import threading
 
 import pytest
 
-from app.synthesis.parallel import Team, Work
+from app.synthesis.parallel import Team, Work, row_blocks
 
 
 class StopError(Exception):
@@ -54,3 +54,39 @@ def test_what_a_task_raises_comes_out():
 
     with Team(2) as team, pytest.raises(StopError):
         Work(team, lambda stage, part: None).run("failing", task, range(10))
+
+
+@pytest.mark.parametrize(("height", "rows"), [(1, 64), (64, 64), (65, 64), (150, 64), (7, 3)])
+def test_row_blocks_follow_one_another_and_hold_every_row(height, rows):
+    blocks = row_blocks(height, rows)
+    assert [row for first, last in blocks for row in range(first, last)] == list(range(height))
+    assert all(last - first == rows for first, last in blocks[:-1])
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+def test_a_team_computes_every_item_once_and_reports_up_to_one(threads):
+    computed, parts = [], []
+    with Team(threads) as team:
+        team.run(computed.append, range(20), parts.append)
+    assert sorted(computed) == list(range(20))
+    assert parts == sorted(parts)
+    assert parts[-1] == 1
+
+
+def test_tasks_that_have_not_begun_are_dropped_when_one_fails():
+    begun = []
+
+    def task(item):
+        begun.append(item)
+        raise StopError
+
+    with Team(1) as team, pytest.raises(StopError):
+        team.run(task, range(1000), lambda part: None)
+    assert len(begun) < 1000
+
+
+def test_no_threads_are_as_good_as_one():
+    computed = []
+    with Team(0) as team:
+        team.run(computed.append, range(3), lambda part: None)
+    assert computed == [0, 1, 2]

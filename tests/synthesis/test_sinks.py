@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from app.synthesis.sinks import Extent, Levels
+from app.synthesis.sinks import Extent, Levels, array_sink
 
 
 def rounded(values, low=0, high=255, peak=255):
@@ -54,3 +54,12 @@ def test_channels_are_interleaved():
     Levels(lambda first, block: rows.append(block.copy()), 3, 0, 255, 255)(0, planes)
     assert rows[0].shape == (2, 3, 3)
     assert rows[0].reshape(-1, 3).tolist() == [[1, 2, 3]] * 6
+
+
+def test_rows_of_an_array_sink_lie_where_they_belong_in_whatever_order_they_come():
+    texture = np.full((5, 4, 2), np.nan, np.float32)
+    sink = array_sink(texture)
+    values = np.arange(40, dtype=np.float32).reshape(5, 4, 2)
+    for first, last in ((3, 5), (0, 3)):
+        sink(first, [values[first:last, :, channel] for channel in range(2)])
+    assert (texture == values).all()

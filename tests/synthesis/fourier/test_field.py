@@ -42,13 +42,27 @@ def plain_bump(n, alpha):
     return phi / np.sqrt((phi**2).mean())
 
 
+def plain_gaussian(n, alpha):
+    """exp(−(α − t)² / (2σ²)) with σ = α/4 up to α, and 1 beyond."""
+    t = (np.arange(n) + 0.5) / n
+    t = np.minimum(t, 1 - t)
+    phi = np.exp(-(np.maximum(alpha - t, 0) ** 2) / (2 * (alpha / 4) ** 2)) if alpha else np.ones(n)
+    return phi / np.sqrt((phi**2).mean())
+
+
+def plain_window(n, noise):
+    if noise.window == "gaussian":
+        return plain_gaussian(n, noise.alpha)
+    return plain_bump(n, noise.alpha) if noise.alpha else np.ones(n)
+
+
 def plain(h, noise):
     """RPN and ADSN by the letter of the articles, and the extended spot with the variance of p."""
     p = plain_periodic(h.astype(np.float64)) if noise.periodic else h.astype(np.float64)
     (rows, columns), mean = h.shape[:2], p.mean((0, 1))
     spot = np.zeros((noise.height, noise.width, h.shape[2]))
-    down = plain_bump(rows, noise.alpha) if noise.height > rows else np.ones(rows)
-    across = plain_bump(columns, noise.alpha) if noise.width > columns else np.ones(columns)
+    down = plain_window(rows, noise) if noise.height > rows else np.ones(rows)
+    across = plain_window(columns, noise) if noise.width > columns else np.ones(columns)
     top, left = (noise.height - rows) // 2, (noise.width - columns) // 2
     spot[top : top + rows, left : left + columns] = (p - mean) * down[:, None, None] * across[None, :, None]
     spot *= np.sqrt(p.var((0, 1)).sum() / spot.var((0, 1)).sum())
@@ -79,6 +93,15 @@ def test_at_the_same_size_it_agrees_with_the_plain_formula(size, options, draw):
 def test_at_a_larger_size_it_agrees_with_the_plain_formula(size, options, draw):
     h = np.random.default_rng(1).uniform(0, 255, (64, 64, 2)).astype(np.float32)
     noise = Noise(draw, *size, seed=12, alpha=0.2, **options)
+    np.testing.assert_allclose(synthesize(h, noise, threads=2), plain(h, noise), atol=255 * 1e-5)
+
+
+@pytest.mark.parametrize("draw", [random_phase, white_noise])
+@pytest.mark.parametrize("profile", ["bump", "gaussian"])
+@pytest.mark.parametrize("alpha", [0, 0.01, 0.1, 0.5])
+def test_with_every_window_it_agrees_with_the_plain_formula(profile, alpha, draw):
+    h = np.random.default_rng(3).uniform(0, 255, (40, 50, 2)).astype(np.float32)
+    noise = Noise(draw, 61, 90, seed=13, alpha=alpha, window=profile)
     np.testing.assert_allclose(synthesize(h, noise, threads=2), plain(h, noise), atol=255 * 1e-5)
 
 

@@ -213,3 +213,11 @@ def test_the_progress_of_every_stage_rises_to_one():
         assert parts == sorted(parts)
         assert parts[-1] == 1
     assert calls == sorted(calls, key=lambda call: ("spot", "random phase", "texture").index(call[0]))
+
+
+@pytest.mark.parametrize("profile", ["bump", "gaussian"])
+@pytest.mark.parametrize("alpha", [0, 0.3, 0.5])
+def test_an_end_of_the_path_is_the_adsn_with_the_same_window(profile, alpha):
+    one, other = (np.random.default_rng(seed).uniform(0, 255, (20, 24, 3)).astype(np.float32) for seed in (0, 1))
+    z = mix([one, other], [1, 0], 33, 50, seed=2, alpha=alpha, window=profile)
+    assert (z == adsn(one, 33, 50, seed=2, alpha=alpha, window=profile)).all()

@@ -40,13 +40,16 @@ def periodic(film):
     return p - np.fft.ifftn((1 - np.exp(1j * k)) * jump / below, axes=(0, 1, 2)).real
 
 
-def spot(film, shape):
+def spot(film, shape, alpha=0.1, profile="bump"):
     """The extended spot frame by frame, double precision."""
     p = periodic(centre_video(film, shape))
     if p.shape[:3] == shape:
         return p
     count, channels = len(p), film.shape[3]
-    phi = [window(have, 0.1) if asked > have else np.ones(have) for asked, have in zip(shape, p.shape, strict=False)]
+    phi = [
+        window(have, alpha, profile) if asked > have else np.ones(have)
+        for asked, have in zip(shape, p.shape, strict=False)
+    ]
     still = np.einsum("thwc,t->hwc", p, phi[0] / phi[0].sum())
     rows, columns = (slice((shape[i] - p.shape[i]) // 2, (shape[i] + p.shape[i]) // 2) for i in (1, 2))
 
@@ -76,9 +79,9 @@ def spectrum(film):
     return found
 
 
-def keeps(film, z):
+def keeps(film, z, *options):
     """Assert that moduli, differences of phases between channels and the mean are the spot's."""
-    before, after = spectrum(spot(film, z.shape[:3])), spectrum(z)
+    before, after = spectrum(spot(film, z.shape[:3], *options)), spectrum(z)
     scale = max(np.abs(before).max(), 1e-3)
     np.testing.assert_allclose(np.abs(after), np.abs(before), atol=2e-4 * scale)
     for c, d in itertools.combinations(range(film.shape[3]), 2):
@@ -102,6 +105,13 @@ def test_modulus_mean_and_phase_differences_are_those_of_the_clip(shape):
 def test_at_any_other_size_they_are_those_of_the_extended_spot(sizes, channels, seed):
     film = clip(*sizes[:3], channels)
     keeps(film, video_rpn(film, *sizes[3:], seed=seed))
+
+
+@pytest.mark.parametrize("profile", ["bump", "gaussian"])
+@pytest.mark.parametrize("alpha", [0, 0.3, 0.5])
+def test_with_every_window_they_are_those_of_the_spot_extended_with_it(profile, alpha):
+    film = clip(8, 12, 11)
+    keeps(film, video_rpn(film, 13, 20, 17, seed=2, alpha=alpha, window=profile), alpha, profile)
 
 
 @pytest.mark.parametrize("shape", [(4, 6, 8), (5, 7, 11), (6, 5, 4)])

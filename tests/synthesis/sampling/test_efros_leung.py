@@ -98,11 +98,32 @@ def test_the_verbatim_share_counts_pixels_of_the_offset_of_the_left_or_upper_nei
     y, x = np.mgrid[:6, :8]
     whole = np.stack([y + 3, x + 2], 2)
     assert verbatim_share(whole) == pytest.approx(100 * 47 / 48)
-    halves = whole.copy()
-    halves[:, 4:, 1] += 5  # the right half from elsewhere: its first pixel is copied along with none
-    assert verbatim_share(halves) == pytest.approx(100 * 46 / 48)
     confetti = np.random.default_rng(0).permutation(48 * 100).reshape(-1, 2)[:48].reshape(6, 8, 2)
     assert verbatim_share(confetti) == 0
+
+
+@pytest.mark.parametrize("coordinate", [0, 1])
+@pytest.mark.parametrize("axis", [0, 1])
+def test_one_coordinate_that_jumps_parts_two_halves_in_either_direction(axis, coordinate):
+    """A single line of pixels, in which each has one neighbour: the second half's first pixel is copied along with none."""
+    shape = (8, 1) if axis == 0 else (1, 8)
+    copied = np.stack(np.indices(shape), 2) + (3, 2)
+    copied.reshape(8, 2)[4:, coordinate] += 5
+    assert verbatim_share(copied) == 100 * 6 / 8
+
+
+def test_the_verbatim_share_is_that_of_a_plain_count():
+    """Offsets of two values each, so that both, one or none of them are the neighbour's."""
+    rng = np.random.default_rng(1)
+    copied = np.stack(np.indices((12, 15)), 2) + rng.integers(0, 2, (12, 15, 2))
+    along = 0
+    for y, x in np.ndindex(12, 15):
+        left, above = (
+            ny >= 0 and nx >= 0 and tuple(copied[y, x] - copied[ny, nx]) == (y - ny, x - nx)
+            for ny, nx in ((y, x - 1), (y - 1, x))
+        )
+        along += left or above
+    assert verbatim_share(copied) == pytest.approx(100 * along / 180)
 
 
 @pytest.mark.parametrize(("size", "n"), [((20, 23), 2), ((9, 30), 4), ((11, 9), 4)])
