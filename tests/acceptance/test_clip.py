@@ -212,6 +212,19 @@ def test_a_still_method_takes_one_frame(
     expect(page.locator("#time-first")).to_have_value("7")
 
 
+def test_the_meter_measures_the_frame_that_is_shown(visitors: Any, uploaded: str) -> None:
+    """Typed, dragged or stepped to."""
+    page = visitors.visit(uploaded)
+    page.get_by_text("RPN", exact=True).click()
+    with page.expect_request("**/structure?*frame=7"):
+        page.fill("#time-first", "7")
+        page.press("#time-first", "Tab")
+    with page.expect_request("**/structure?*frame=15"):
+        drag(page, 7.5, 15.5)
+    with page.expect_request("**/structure?*frame=16"):
+        page.locator("#crop .track [data-part=first]").press("ArrowRight")
+
+
 @pytest.mark.parametrize(
     ("part", "typed", "time", "words"),
     [

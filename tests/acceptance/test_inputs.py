@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from PIL import Image
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Route, expect
 
 SIDES = ("x", "y", "width", "height")
 MIX = "/samples/gravel_gray?method=mix&crop=96,96,160,160"
@@ -172,6 +172,29 @@ def test_another_photograph_is_uploaded_beside_the_first(visitors: Any, site: An
     assert page.input_value("#input-2-sample") == uploaded
     run(page)
     assert record_of(site, page)["inputs"][1]["sample"] == uploaded
+
+
+def test_nothing_is_run_while_photographs_are_on_their_way(visitors: Any, photograph: Path) -> None:
+    """It would be run without them: the button comes back with the last one, also where that was refused."""
+    visitors.refusals_expected = True
+    page = visitors.visit("/samples/gravel_gray?method=mix&crop=96,96,160,160&third=sand_desert009")
+    held: list[Route] = []
+
+    def hold(route: Route) -> None:
+        held.append(route)
+
+    page.route("**/api/v1/samples", hold)
+    button = page.get_by_role("button", name="Synthesise")
+    for number, path in ((2, photograph), (3, Path("samples/catalogue.json"))):
+        page.set_input_files(f"#input-{number}-file", path)
+        expect(page.locator(f"#input-{number} .sending")).to_have_text("Sending …")
+        expect(button).to_be_disabled()
+    held[0].continue_()
+    expect(page.locator("#input-2 .sending")).to_have_text("")
+    expect(button).to_be_disabled()
+    held[1].continue_()
+    expect(page.locator("#input-3 .sending")).to_contain_text("PNG")
+    expect(button).to_be_enabled()
 
 
 def test_back_and_reload_find_every_sample_and_crop(visitors: Any) -> None:

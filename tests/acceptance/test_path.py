@@ -129,6 +129,20 @@ def test_a_file_that_is_no_photograph_is_refused_with_words(
     screenshot(page, "home-refused")
 
 
+def test_a_file_that_is_too_large_is_not_sent(visitors: Any) -> None:
+    page = visitors.visit("/")
+    sent: list[str] = []
+    page.on("request", lambda request: sent.append(f"{request.method} {request.url}"))
+    page.evaluate("document.querySelector('#upload').dataset.limit = 2 ** 20")
+    page.set_input_files("#file", {"name": "large.png", "mimeType": "image/png", "buffer": bytes(3 * 2**19)})
+    expect(page.locator("#upload-error")).to_have_text(
+        "This file has 1.5 MB; at most 1 MB can be taken: send a smaller one."
+    )
+    expect(page.locator("#upload-error")).to_be_focused()
+    expect(page.get_by_role("button", name="Choose")).to_be_visible()
+    assert not [request for request in sent if request.startswith("POST")]
+
+
 def tab_to(page: Page, selector: str) -> None:
     for _ in range(80):
         page.keyboard.press("Tab")

@@ -131,6 +131,32 @@ def test_both_films_play_in_step(visitors: Any, films: dict[str, Any], screensho
     screenshot(page, "experiment-film", full_page=False)
 
 
+def test_a_video_that_has_run_ahead_waits_for_the_other(visitors: Any, films: dict[str, Any]) -> None:
+    """Ten frames ahead it stands still, then plays slowly, and at last as fast as the other one."""
+    page = still(visitors, address(films))
+    speeds = page.evaluate(
+        """rate => new Promise(done => {
+            const [behind, ahead] = document.querySelectorAll(".stage video");
+            const speeds = [];
+            const look = () => {
+                speeds.push(ahead.playbackRate);
+                const apart = (ahead.currentTime - behind.currentTime) * rate;
+                if (Math.abs(apart) < 1.5 && ahead.playbackRate > 0) done(speeds);
+                else requestAnimationFrame(look);
+            };
+            ahead.addEventListener("seeked", () => {
+                document.querySelector("[data-play]").click();
+                look();
+            }, { once: true });
+            ahead.currentTime = 10.5 / rate;
+        })""",
+        RATE,
+    )
+    assert speeds[0] == 0
+    assert speeds[-1] > 0
+    page.wait_for_function(f"() => {VIDEOS}.every(video => video.playbackRate === 1)")
+
+
 @pytest.mark.parametrize("name", ["texture", "texture-mp4", "crop", "crop-mp4"])
 def test_chromium_plays_every_file(visitors: Any, films: dict[str, Any], name: str) -> None:
     """It shows frames of the right size, and comes round to the beginning again."""

@@ -118,15 +118,20 @@ test("after five seconds of silence the record is asked for, and not before", as
   assert.equal(asked.length, 1);
 });
 
-test("where events fail it is asked every second, until they come again", async () => {
+test("where events fail it is asked once a second, until they come again", async () => {
   const source = open();
   answer = respond({ status: "running", progress: 0.25 });
+  source.fail();
   source.fail();
   await pass(3000);
   assert.equal(asked.length, 3);
   source.send("progress", { status: "running", progress: 0.3 });
   await pass(4000);
   assert.equal(asked.length, 3);
+  source.send("progress", { status: "running", progress: 0.4 });
+  source.fail();
+  await pass(1000);
+  assert.equal(asked.length, 4);
 });
 
 test("an end that was missed is noticed by asking", async () => {

@@ -5,14 +5,14 @@ import { beforeEach, test } from "node:test";
 import { Gestures } from "../../static/js/crop/gestures.js";
 
 /** @type {string[]} */
-let told = [];
+let heard = [];
 
 class Frame extends EventTarget {
   setPointerCapture() {}
 }
 
 beforeEach(() => {
-  told = [];
+  heard = [];
   Object.assign(globalThis, { HTMLElement: class {} });
 });
 
@@ -21,12 +21,12 @@ function open() {
   new Gestures(/** @type {HTMLElement} */ (/** @type {unknown} */ (frame)), {
     kind: () => "draw",
     begin: () => null,
-    pull: (_drag, [x, y]) => told.push(`pull ${x},${y}`),
-    end: ({ under }) => told.push(under ? "end" : "click"),
-    cancel: ({ under }) => told.push(under ? "cancel" : "forget"),
+    pull: (_drag, [x, y]) => heard.push(`pull ${x},${y}`),
+    end: ({ under }) => heard.push(under ? "end" : "click"),
+    cancel: ({ under }) => heard.push(under ? "cancel" : "forget"),
     grip: ([x, y]) => [x, y],
-    zoom: (_grip, factor, [x, y]) => told.push(`zoom ${factor} at ${x},${y}`),
-    settle: () => told.push("settle"),
+    zoom: (_grip, factor, [x, y]) => heard.push(`zoom ${factor} at ${x},${y}`),
+    settle: () => heard.push("settle"),
   });
   /**
    * @param {string} type
@@ -50,9 +50,9 @@ for (const [pointerType, slop] of /** @type {const} */ ([
     const send = open();
     send("pointerdown", 100, 100, { pointerType });
     send("pointermove", 100 + slop - 1, 100 - slop + 1, { pointerType });
-    assert.deepEqual(told, []);
+    assert.deepEqual(heard, []);
     send("pointerup", 100, 100, { pointerType });
-    assert.deepEqual(told, ["click"]);
+    assert.deepEqual(heard, ["click"]);
   });
 
   test(`a ${pointerType} drags from ${slop} pixels on, also back to where it began`, () => {
@@ -61,7 +61,7 @@ for (const [pointerType, slop] of /** @type {const} */ ([
     send("pointermove", 100, 100 - slop, { pointerType });
     send("pointermove", 100, 100, { pointerType });
     send("pointerup", 100, 100, { pointerType });
-    assert.deepEqual(told, [`pull 100,${100 - slop}`, "pull 100,100", "end"]);
+    assert.deepEqual(heard, [`pull 100,${100 - slop}`, "pull 100,100", "end"]);
   });
 }
 
@@ -75,14 +75,14 @@ test("fingers that part enlarge, about the place between them, and take back wha
   send("pointerup", 130, 100, first);
   send("pointermove", 300, 300, second);
   send("pointerup", 300, 300, second);
-  assert.deepEqual(told, ["pull 130,100", "cancel", "zoom 2 at 150,100", "settle"]);
+  assert.deepEqual(heard, ["pull 130,100", "cancel", "zoom 2 at 150,100", "settle"]);
 });
 
 test("a wheel with Ctrl enlarges where it is turned away, and alone scrolls the page", () => {
   Object.assign(globalThis, { WheelEvent: { DOM_DELTA_LINE: 1 } });
   const send = open();
   send("wheel", 5, 6, { deltaY: -100, deltaMode: 0 });
-  assert.deepEqual(told, []);
+  assert.deepEqual(heard, []);
   send("wheel", 5, 6, { deltaY: -100, deltaMode: 0, ctrlKey: true });
-  assert.deepEqual(told, [`zoom ${Math.E} at 5,6`, "settle"]);
+  assert.deepEqual(heard, [`zoom ${Math.E} at 5,6`, "settle"]);
 });

@@ -9,7 +9,7 @@ import { pace } from "./pacing.js";
 const KEYS = "Space plays and pauses, comma and full stop step by a frame.";
 
 export class Player {
-  wanted = false;
+  on = false; // whether the videos are to play, seen or not
   seen = true;
   ticking = 0;
   shown = 0; // number of the frame that is on the screen
@@ -85,7 +85,7 @@ export class Player {
   }
 
   get running() {
-    return this.wanted && this.seen;
+    return this.on && this.seen;
   }
 
   /** The whole frames that the clock's video has shown. */
@@ -94,17 +94,17 @@ export class Player {
   }
 
   toggle() {
-    if (this.wanted) this.pause();
+    if (this.on) this.pause();
     else this.play();
   }
 
   play() {
-    this.wanted = true;
+    this.on = true;
     this.run();
   }
 
   pause() {
-    this.wanted = false;
+    this.on = false;
     this.run();
     this.place(this.position);
   }
@@ -120,7 +120,7 @@ export class Player {
    * @param {number} position
    */
   go(position) {
-    this.wanted = false;
+    this.on = false;
     this.run();
     this.place(position);
   }
@@ -131,7 +131,7 @@ export class Player {
     this.show();
   }
 
-  /** Let the videos play, or not, as is wanted. */
+  /** Let the videos play, or not. */
   run() {
     cancelAnimationFrame(this.ticking);
     for (const { video } of this.videos) {
@@ -143,8 +143,8 @@ export class Player {
       }
     }
     if (this.running) this.tick();
-    this.bar.classList.toggle("playing", this.wanted);
-    find(this.bar, "[data-play]").setAttribute("aria-label", this.wanted ? "Pause" : "Play");
+    this.bar.classList.toggle("playing", this.on);
+    find(this.bar, "[data-play]").setAttribute("aria-label", this.on ? "Pause" : "Play");
   }
 
   tick() {
