@@ -90,3 +90,31 @@ def test_the_table_of_the_readme_has_every_method_once() -> None:
 def test_every_method_stands_in_a_group_of_its_own_choice() -> None:
     """The group “More” takes what was forgotten."""
     assert "More" not in [group.title for group in groups()]
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+def test_every_path_of_the_repository_that_a_document_names_exists(document: Path) -> None:
+    text = document.read_text(encoding="utf-8")
+    tops = "|".join(("app", "tests", "templates", "static", "samples", "scripts", "benchmarks", "docs", "lint"))
+    for path in re.findall(rf"`((?:{tops})/[\w./-]*)`", text):
+        if path not in ("app/assets", "tests/acceptance/screenshots"):  # of an installed wheel; left by the tests
+            assert (ROOT / path).exists(), path
+
+
+def test_the_layout_that_the_architecture_draws_is_the_layout() -> None:
+    """Every folder of the drawing is there, and every folder of the code is in the drawing."""
+    text = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    drawing = re.search(r"## Layout\n\n```\n(.*?)```", text, re.DOTALL)
+    assert drawing
+    drawn: set[str] = set()
+    above: dict[int, str] = {}
+    for line in drawing[1].splitlines():
+        depth = (len(line) - len(line.lstrip())) // 2
+        words = re.match(r"((?:[\w./]+ )*[\w./]+)(?:  |$)", line.lstrip())
+        assert words, line
+        for word in words[1].split():
+            drawn.add("/".join([*(above[level] for level in range(depth)), word.rstrip("/")]))
+        above[depth] = words[1].split()[-1].rstrip("/")
+    assert [path for path in drawn if not (ROOT / path).exists()] == []
+    folders = {path.parent.relative_to(ROOT).as_posix() for path in (ROOT / "app").rglob("*.py")}
+    assert folders <= drawn
