@@ -1,4 +1,4 @@
-"""What comes with the service: photographs, clips, a few drawings; what each shows, where to crop it, whom to thank."""
+"""Bundled samples: photographs, clips and drawings that come with the service, with a crop and whom to thank."""
 
 import errno
 import json
@@ -39,7 +39,7 @@ class BundledSample:
         return self.path.stem
 
 
-def bundled(directory: Path) -> list[BundledSample]:
+def read_catalogue(directory: Path) -> list[BundledSample]:
     """Photographs of a directory in the order of its catalogue, the most telling ones first.
 
     Parameters
@@ -88,7 +88,7 @@ def require_files(samples: Path) -> None:
     for path in needed:
         if not path.exists():
             raise _missing(path)
-    bundled(samples)
+    read_catalogue(samples)
 
 
 def _missing(path: Path) -> FileNotFoundError:

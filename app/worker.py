@@ -1,4 +1,4 @@
-"""The wiring of a worker process: what `app.main` is for the service."""
+"""Wiring of a worker process: what `app.main` is for the service."""
 
 from functools import lru_cache
 from pathlib import Path

@@ -14,7 +14,7 @@ import scipy.fft
 from numpy.typing import NDArray
 from PIL import Image
 
-from app.samples import bundled
+from app.samples import read_catalogue
 from app.settings import ROOT
 from app.synthesis.fourier.periodic import periodic_component
 from app.synthesis.gaussian.rpn import rpn
@@ -122,7 +122,7 @@ def crops(image: Image.Image, reduced: int) -> Iterator[Real]:
 def photographs(reduced: int = 1) -> list[Photograph]:
     """Every bundled photograph that is large enough; neither scenes nor what was drawn."""
     found = []
-    for entry in bundled(ROOT / "samples"):
+    for entry in read_catalogue(ROOT / "samples"):
         image = Image.open(entry.path)
         if entry.kind in ("scene", "drawn") or min(image.size) < SIDE * reduced:
             continue

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from playwright.sync_api import sync_playwright
 
-from app.samples import bundled
+from app.samples import read_catalogue
 from app.settings import ROOT, Settings
 from benchmarks.served import served
 
@@ -18,7 +18,7 @@ PICTURE = ROOT / "docs" / "gallery.png"
 
 def main() -> None:
     """Run an experiment of a service of its own and photograph its page."""
-    photograph = next(entry for entry in bundled(Settings().samples_dir) if entry.id == SAMPLE)
+    photograph = next(entry for entry in read_catalogue(Settings().samples_dir) if entry.id == SAMPLE)
     with tempfile.TemporaryDirectory() as directory, served(Path(directory)) as service:
         service.wait_for_sample(SAMPLE)
         experiment = service.finish(

@@ -7,13 +7,13 @@ from PIL import Image
 
 from app.experiments.model import Sample
 from app.images.media import Media
-from app.samples import bundled
+from app.samples import read_catalogue
 from app.settings import ROOT
 
 
 def sample_of(sample_id: str) -> Sample:
     """What the store would know of a bundled photograph or clip."""
-    entry = next(entry for entry in bundled(ROOT / "samples") if entry.id == sample_id)
+    entry = next(entry for entry in read_catalogue(ROOT / "samples") if entry.id == sample_id)
     if entry.kind == "moving":
         with av.open(entry.path) as container:
             film = container.streams.video[0]

@@ -13,7 +13,7 @@ import pytest
 from numpy.typing import NDArray
 from PIL import Image
 
-from app.samples import CATALOGUE, BundledSample, bundled
+from app.samples import CATALOGUE, BundledSample, read_catalogue
 from app.settings import ROOT
 
 SAMPLES = ROOT / "samples"
@@ -27,7 +27,7 @@ def film(path: Path) -> NDArray[np.uint8]:
 
 @pytest.fixture(scope="module")
 def photographs() -> list[BundledSample]:
-    return bundled(SAMPLES)
+    return read_catalogue(SAMPLES)
 
 
 def test_every_photograph_of_the_directory_has_exactly_one_entry(photographs: list[BundledSample]) -> None:
@@ -72,14 +72,14 @@ def test_titles_are_plain_words_and_tell_the_photographs_apart(photographs: list
 
 
 def test_a_directory_without_a_catalogue_has_no_samples(tmp_path: Path) -> None:
-    assert bundled(tmp_path) == []
+    assert read_catalogue(tmp_path) == []
 
 
 def test_an_entry_without_its_file_is_an_error_that_names_it(tmp_path: Path) -> None:
     entry = json.loads((SAMPLES / CATALOGUE).read_text(encoding="utf-8"))[0]
     (tmp_path / CATALOGUE).write_text(json.dumps([entry]), encoding="utf-8")
     with pytest.raises(FileNotFoundError, match=entry["file"]):
-        bundled(tmp_path)
+        read_catalogue(tmp_path)
 
 
 def test_drawn_samples_come_last_and_can_be_drawn_again(photographs: list[BundledSample], tmp_path: Path) -> None:

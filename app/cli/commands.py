@@ -147,7 +147,7 @@ def catalogue(
         service = build_service(settings)
         try:
             service.start()
-            filled = service.exhibition.fill(Event(), again=again, at_once=settings.workers, told=told)
+            filled = service.exhibition.fill(Event(), again=again, at_once=settings.workers, on_done=told)
         finally:
             service.close()
     typer.echo(f"Made {filled.made} figures, {filled.failed} failed, {filled.kept} were there already.")

@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 from app.errors import InvalidInputError, NotFoundError
 from app.experiments.environment import environment
-from app.experiments.files.outputs import AnyFormat, file_of
+from app.experiments.files.outputs import AnyFormat, name_of_file
 from app.experiments.model import Experiment
 from app.images.convert import convert
 from app.methods.announced import Announced
@@ -60,7 +60,7 @@ def target(path: Path, method: Method, name: str, depth: Depth | None, *, overwr
     if file_format is None:
         subject = f"The method {method.name} makes" if name == "texture" else f"The output {name!r} is"
         raise InvalidInputError(
-            f"{subject} {'a video' if output.film else 'a picture'}: the name of the file to write ends with one of "
+            f"{subject} {'a video' if output.video else 'a picture'}: the name of the file to write ends with one of "
             f"{', '.join(known)}; got {path.name!r}."
         )
     if depth == 16:
@@ -71,7 +71,7 @@ def target(path: Path, method: Method, name: str, depth: Depth | None, *, overwr
         refuse_deep(output, 16)
     _check_parent(path)
     _check_free(path, overwrite)
-    return Target(path, file_of(output, file_format), file_format)
+    return Target(path, name_of_file(output, file_format), file_format)
 
 
 def check_directory(directory: Path, names: Iterable[str], *, overwrite: bool) -> None:
@@ -157,7 +157,7 @@ def write_record(
 
 
 def _formats(output: Announced) -> dict[str, AnyFormat]:
-    if output.film:
+    if output.video:
         return FILMS
     return STILLS if output.media_type == PNG else ANIMATED
 

@@ -28,7 +28,7 @@ from app.errors import InvalidInputError, NotFoundError
 from app.experiments.diagnostics import diagnose
 from app.experiments.model import Experiment, ExperimentInput, Sample
 from app.experiments.preparation import Answer, NewExperiment, NewInput, prepare
-from app.experiments.run import METHOD_SHARE, only
+from app.experiments.run import METHOD_SHARE, pick
 from app.images.crop import Frames, Rectangle
 from app.images.decode import Decoded, Limits, decode
 from app.methods.allowed import Allowed
@@ -87,7 +87,7 @@ def _one(request: Request, method: Method, settings: Settings, progress: Progres
     ready = _ready(request, Answer(where.output, depth), settings)
     with ready.pictures(settings.threads, progress) as pictures:
         # What is made before it is dropped, and what comes after it is not computed.
-        picture = next(only(pictures, where.output))
+        picture = next(pick(pictures, where.output))
         write(where, picture, depth)
     size = f"{picture.width} × {picture.height} pixels"
     if picture.frames > 1:

@@ -1,4 +1,4 @@
-"""The engine on Dask: our own queue before it, limits and recovery around it."""
+"""Dask executor: runs jobs on a Dask cluster, with our own queue before it, limits and recovery around it."""
 
 import logging
 import threading
@@ -200,8 +200,8 @@ class DaskExecutor:
             if run.forced or engine is None or run.future is None:
                 continue
             if run.cancelled is not None:
-                if not run.asked:
-                    run.asked = True
+                if not run.stop_sent:
+                    run.stop_sent = True
                     engine.stop(run.job)
                 overdue = now - run.cancelled > GRACE_SECONDS
             else:

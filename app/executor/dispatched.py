@@ -1,4 +1,4 @@
-"""A job that was given to Dask, and what its end means."""
+"""Dispatched jobs: what was given to Dask, and the verdict on its end."""
 
 import logging
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ class Dispatched:
     fraction: float = 0.0
     failure: str | None = None
     cancelled: float | None = None
-    asked: bool = False
+    stop_sent: bool = False
     out_of_time: bool = False
     forced: bool = False
 

@@ -1,4 +1,4 @@
-"""One connection to a Dask cluster: an embedded one of our own processes, or a scheduler's address."""
+"""Engine: one connection to a Dask cluster, an embedded one of our own processes or a scheduler's address."""
 
 import asyncio
 import logging

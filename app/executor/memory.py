@@ -1,4 +1,4 @@
-"""The memory allocator of worker processes: what they are started with, and what they give back."""
+"""Memory allocator of worker processes: the variables they are started with, and what they give back."""
 
 import ctypes
 import os

@@ -1,4 +1,4 @@
-"""What people are told when a run was ended from outside."""
+"""User-facing messages for runs that the executor stopped: time limit, lost worker."""
 
 BROKEN = "Something went wrong inside the method. This is a fault of the service, not yours."
 LOST = (

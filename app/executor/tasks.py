@@ -1,4 +1,4 @@
-"""What runs on the workers and nannies of a Dask cluster."""
+"""Tasks: the functions that run on the workers and nannies of a Dask cluster."""
 
 import logging
 import os

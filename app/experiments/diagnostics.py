@@ -1,4 +1,4 @@
-"""What is measured of every experiment: how structured its crops and textures are, and what its method found out."""
+"""Diagnostics of an experiment: the structure index of its crops and textures, and the facts its method found."""
 
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -42,15 +42,15 @@ def diagnose(sources: Sequence[Source], staged: Sequence[tuple[Picture, Path]], 
     outputs: list[float | None] = []
     for source in sources:
         progress("structure", 0.92 + 0.06 * len(inputs) / total)
-        inputs.append(_rounded(measure_delta(source.pixels)))
+        inputs.append(_round(measure_delta(source.pixels)))
     for picture, path in textures:
         progress("structure", 0.92 + 0.06 * (len(inputs) + len(outputs)) / total)
-        outputs.append(_rounded(measure_delta(_pixels(picture, path))))
+        outputs.append(_round(measure_delta(_pixels(picture, path))))
     facts = [{"output": picture.name, **asdict(fact)} for picture, _ in staged for fact in picture.facts]
     return {"structure": {"inputs": inputs, "outputs": outputs}, "facts": facts}
 
 
-def _rounded(delta: float | None) -> float | None:
+def _round(delta: float | None) -> float | None:
     return None if delta is None else round(delta, DIGITS)
 
 

@@ -1,4 +1,4 @@
-"""The environment of a run: what its bytes may hang on, beside the experiment itself."""
+"""Environment of a run: versions and processor, on which its bytes may depend."""
 
 from functools import cache
 from importlib.metadata import version

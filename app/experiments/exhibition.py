@@ -1,4 +1,4 @@
-"""The program's own experiments: those that its pages show. Made once, kept for good, found again by what they are."""
+"""Exhibits: makes the experiments that the pages show, once and for good, and finds them by what they are."""
 
 import logging
 import threading
@@ -40,8 +40,8 @@ class Filled:
     without_sample: int = 0
 
 
-Told = Callable[[int, int, Exhibit, str | None], None]
-"""``told(number, of, exhibit, error)``: one more is done, the last of ``of`` at ``number == of``"""
+OnDone = Callable[[int, int, Exhibit, str | None], None]
+"""``on_done(number, of, exhibit, error)``: one more is done, the last of ``of`` at ``number == of``"""
 
 
 def _silent(number: int, of: int, exhibit: Exhibit, error: str | None) -> None:
@@ -81,7 +81,9 @@ class Exhibition:
                 log.exception("the catalogue could not be made; the next start tries again")
             self.making = False
 
-    def fill(self, closing: threading.Event, *, again: bool = False, at_once: int = 1, told: Told = _silent) -> Filled:
+    def fill(
+        self, closing: threading.Event, *, again: bool = False, at_once: int = 1, on_done: OnDone = _silent
+    ) -> Filled:
         """Make what is missing or failed; nothing is handed to the engine while something waits there.
 
         Parameters
@@ -92,7 +94,7 @@ class Exhibition:
             Also make anew what is there, and what the operator deleted.
         at_once : int
             How many the engine may have at a time.
-        told : callable
+        on_done : callable
             Called after each.
         """
         while not self._samples_are_in.wait(POLL_SECONDS):
@@ -101,8 +103,8 @@ class Exhibition:
         here = {sample.id for sample in self._store.bundled_samples()}
         every = exhibits()
         declared = {name: exhibit for name, exhibit in every.items() if here.issuperset(dict(exhibit.inputs))}
-        wanted = [name for name in declared if again or self._is_wanted(name)]
-        waiting, begun, number, failed = deque(wanted), set[str](), 0, 0
+        missing = [name for name in declared if again or self._is_missing(name)]
+        waiting, begun, number, failed = deque(missing), set[str](), 0, 0
         while waiting or begun:
             if waiting and len(begun) < at_once and self._executor.waiting == 0:
                 name = waiting.popleft()
@@ -115,8 +117,8 @@ class Exhibition:
                 number += 1
                 error = self._error_of(name)
                 failed += error is not None
-                told(number, len(wanted), declared[name], error)
-        return Filled(number - failed, failed, len(declared) - len(wanted), len(every) - len(declared))
+                on_done(number, len(missing), declared[name], error)
+        return Filled(number - failed, failed, len(declared) - len(missing), len(every) - len(declared))
 
     def find(self, exhibit: Exhibit) -> Experiment | None:
         """Find the experiment of an exhibit, in any state; None if it was not started, or deleted by the operator."""
@@ -145,7 +147,7 @@ class Exhibition:
         )
         return replace(experiment, id=identifier(exhibit))
 
-    def _is_wanted(self, name: str) -> bool:
+    def _is_missing(self, name: str) -> bool:
         try:
             return self._store.get(name).status in UNMADE
         except NotFoundError:

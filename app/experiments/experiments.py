@@ -8,7 +8,7 @@ from app.errors import ForbiddenError
 from app.experiments.housekeeping import Housekeeping
 from app.experiments.model import Experiment, Page, deep_job
 from app.experiments.ports import Executor, ExperimentStore
-from app.experiments.tokens import same, token_digest
+from app.experiments.tokens import is_same_secret, token_digest
 from app.experiments.watching import Watching
 
 PAGE = 24  # experiments of the archive
@@ -56,15 +56,15 @@ class Experiments:
         if not token:
             return False
         operator = self._operator_token
-        is_operator = operator is not None and same(token, operator.get_secret_value())
-        return is_operator or same(token_digest(token), experiment.owner)
+        is_operator = operator is not None and is_same_secret(token, operator.get_secret_value())
+        return is_operator or is_same_secret(token_digest(token), experiment.owner)
 
     def cancel_or_delete(self, experiment_id: str, token: str | None) -> None:
         """Cancel an unfinished experiment; delete a finished one with all that only it refers to.
 
         Raises `ForbiddenError` if the token is neither the owner's nor the operator's.
         """
-        experiment = self._owned(experiment_id, token)
+        experiment = self._get_owned(experiment_id, token)
         if experiment.status.finished:
             self._delete(experiment)
         elif self._store.cancel(experiment_id):
@@ -73,7 +73,7 @@ class Experiments:
 
     def set_listed(self, experiment_id: str, listed: bool, token: str | None) -> None:
         """Show it in the archive, or only to people who have its link. Raises `ForbiddenError`."""
-        self._owned(experiment_id, token)
+        self._get_owned(experiment_id, token)
         self._store.set_listed(experiment_id, listed)
 
     def discard(self, experiment: Experiment) -> None:
@@ -82,7 +82,7 @@ class Experiments:
         self._executor.cancel(experiment.id)
         self._delete(self._store.get(experiment.id))
 
-    def _owned(self, experiment_id: str, token: str | None) -> Experiment:
+    def _get_owned(self, experiment_id: str, token: str | None) -> Experiment:
         experiment = self._store.get(experiment_id)
         if not self.owns(experiment, token):
             raise ForbiddenError(

@@ -1,4 +1,4 @@
-"""Is it a micro-texture? What the structure index of a crop means, in plain words."""
+"""Structure meter: measures crops of samples, and says in plain words what their structure index means."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -51,12 +51,12 @@ class Index:
     z: float | None
 
 
-def reading(delta: float | None) -> Reading:
+def interpret(delta: float | None) -> Reading:
     """What a structure index means, None being that of a crop that is too small.
 
     Examples
     --------
-    >>> [reading(delta).verdict for delta in (0.02, 0.06, 0.2, None)]
+    >>> [interpret(delta).verdict for delta in (0.02, 0.06, 0.2, None)]
     ['micro-texture', 'borderline', 'structured', 'unknown']
     """
     if delta is None:

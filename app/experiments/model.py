@@ -1,4 +1,4 @@
-"""The service's words as frozen records: sample, experiment, output."""
+"""Records of the domain: sample, experiment, output, and their states."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -47,14 +47,13 @@ class Sample(Media):
 
 @dataclass(frozen=True)
 class ExperimentInput:
-    """A crop of a sample, of one of its frames or of several.
+    """A crop of a sample, of one of its frames or of several; both are always explicit."""
 
-    Both are always explicit: where none was asked for, all of the picture, and of a video all frames where the method
-    takes a video, else the first.
-    """
-
+    #: Id of the sample.
     sample: str
+    #: All of the picture where none was chosen.
     crop: Rectangle
+    #: Where none were chosen all frames of a video if the method takes one, else the first.
     frames: Frames = field(default_factory=Frames)
 
 
@@ -72,7 +71,7 @@ class Output(PictureInfo):
         return not self.name.startswith(".")
 
     @property
-    def film(self) -> bool:
+    def video(self) -> bool:
         """Whether it is a video, not a picture (though that may be animated)."""
         return self.media_type.startswith("video/")
 
@@ -135,16 +134,17 @@ class Page:
 
 @dataclass(frozen=True)
 class Snapshot:
-    """An experiment's state of this moment, as the progress bar shows it.
+    """State of an experiment at a moment, as the progress bar shows it."""
 
-    ``position`` is its place in the queue (1 is next) while it waits; ``fraction`` is 0–1; ``stage`` names what is
-    being done; ``elapsed`` are the seconds since it was started.
-    """
-
+    #: Where it stands.
     status: Status
+    #: Place in the queue while it waits; 1 is next.
     position: int | None = None
+    #: The part of the run that is done, 0–1.
     fraction: float = 0.0
+    #: Name of the stage that is being computed.
     stage: str | None = None
+    #: Seconds since a worker began it; once it has finished, seconds that it took.
     elapsed: float = 0.0
 
 

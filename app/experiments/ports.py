@@ -1,4 +1,4 @@
-"""What the use cases need from outside: protocols that `app.store` and `app.executor` implement."""
+"""Protocols of the backends, which `app.store` and `app.executor` implement: experiment store, blob store, executor."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import AbstractContextManager
@@ -14,35 +14,82 @@ from app.settings import Settings
 class ExperimentStore(Protocol):
     """Samples and experiments, durable. Every call is one transaction; every method may be called from any thread."""
 
-    def add_sample(self, sample: Sample, owner: str | None = None) -> None: ...
+    def add_sample(self, sample: Sample, owner: str | None = None) -> None:
+        """Insert a sample.
+
+        Parameters
+        ----------
+        sample : Sample
+        owner : str, optional
+            SHA-256 (hex) of the uploader's token.
+        """
 
     def sample(self, sample_id: str) -> Sample:
-        """Raises `NotFoundError`."""
-        ...
+        """Read a sample.
 
-    def bundled_samples(self) -> list[Sample]: ...
+        Raises
+        ------
+        NotFoundError
+            If there is none of this id.
+        """
 
-    def add(self, experiment: Experiment) -> None: ...
+    def bundled_samples(self) -> list[Sample]:
+        """List the bundled samples, oldest first."""
+
+    def add(self, experiment: Experiment) -> None:
+        """Insert an experiment.
+
+        Raises
+        ------
+        ConflictError
+            If there is one with this id.
+        NotFoundError
+            If one of its samples is not there.
+        """
 
     def replace(self, experiment: Experiment) -> None:
-        """Add it in the place of one of the same identifier, whatever became of that, or of its tombstone."""
-        ...
+        """Insert the experiment, replacing an existing one or a tombstone with the same id."""
 
     def get(self, experiment_id: str) -> Experiment:
-        """Raises `NotFoundError`, or `DeletedError` for one that was deleted."""
-        ...
+        """Read an experiment with its inputs and outputs.
+
+        Raises
+        ------
+        NotFoundError
+            If there is none of this id.
+        DeletedError
+            If it was deleted.
+        """
 
     def page(self, *, limit: int, cursor: str | None = None, method: str | None = None) -> Page:
-        """Succeeded, listed experiments, newest first. A malformed cursor raises `InvalidInputError`."""
-        ...
+        """List listed experiments that succeeded, newest first.
+
+        Parameters
+        ----------
+        limit : int
+            Experiments at most.
+        cursor : str, optional
+            Of the page before; by default the first page.
+        method : str, optional
+            Name of the only method to list.
+
+        Raises
+        ------
+        InvalidInputError
+            At ``cursor``, if it is malformed.
+        """
 
     def unfinished(self) -> list[str]:
-        """Ids of queued and running experiments that are not transient, oldest first."""
-        ...
+        """List the ids of queued and running experiments that are not transient, oldest first."""
 
     def start(self, experiment_id: str) -> Experiment | None:
-        """Mark it running and count the attempt; None if it is already finished, cancelled or deleted."""
-        ...
+        """Mark an experiment as running and count the attempt.
+
+        Returns
+        -------
+        Experiment or None
+            None if it is already finished, cancelled or deleted.
+        """
 
     def succeed(
         self,
@@ -52,48 +99,93 @@ class ExperimentStore(Protocol):
         diagnostics: Mapping[str, Any],
         environment: Mapping[str, str],
     ) -> bool:
-        """Record outputs and success in one transaction; nothing and False if it is no longer running."""
-        ...
+        """Record success together with the outputs.
+
+        Parameters
+        ----------
+        experiment_id : str
+        outputs : sequence of Output
+            In their order.
+        timings : mapping
+            Seconds by stage, in order.
+        diagnostics, environment : mapping
+            See `app.experiments.diagnostics` and `app.experiments.environment`.
+
+        Returns
+        -------
+        bool
+            False, and nothing is recorded, if it is no longer running.
+        """
 
     def fail(self, experiment_id: str, error: str) -> bool:
-        """Queued or running → failed; False if it was finished already."""
-        ...
+        """Record the failure of a queued or running experiment.
+
+        Parameters
+        ----------
+        experiment_id : str
+        error : str
+            A sentence for people.
+
+        Returns
+        -------
+        bool
+            False, and nothing is recorded, if it was finished already.
+        """
 
     def cancel(self, experiment_id: str) -> bool:
-        """Queued or running → cancelled; False if it was finished already."""
-        ...
+        """Record the cancellation of a queued or running experiment; False if it was finished already."""
 
     def add_output(self, experiment_id: str, output: Output) -> None:
-        """Add or replace one output of a succeeded experiment."""
-        ...
+        """Add an output after the others, or replace the one of its name.
 
-    def set_listed(self, experiment_id: str, listed: bool) -> None: ...
+        Raises
+        ------
+        ConflictError
+            If the experiment has not succeeded.
+        """
+
+    def set_listed(self, experiment_id: str, listed: bool) -> None:
+        """Show an experiment in the archive, or hide it.
+
+        Raises
+        ------
+        NotFoundError, DeletedError
+            As `get`.
+        """
 
     def delete(self, experiment_id: str) -> None:
-        """Leave a tombstone (later `get` raises `DeletedError`) and forget everything else about it."""
-        ...
+        """Delete an experiment with its inputs and outputs; one that is not transient leaves a tombstone."""
 
     def remove_unused_samples(self, created_before: datetime, among: Collection[str] | None = None) -> list[Sample]:
-        """Remove uploads older than this (of those named, or of all) to which no experiment refers; returns them."""
-        ...
+        """Delete uploads to which no experiment refers.
+
+        Parameters
+        ----------
+        created_before : datetime
+            Younger ones stay.
+        among : collection of str, optional
+            The only ids to look at.
+
+        Returns
+        -------
+        list of Sample
+            Those that were deleted.
+        """
 
     def finished_before(self, moment: datetime) -> list[str]:
-        """Ids of the experiments that finished before this moment."""
-        ...
+        """List the ids of the experiments that finished before this moment."""
 
     def transient_before(self, moment: datetime) -> list[str]:
-        """Ids of the transient experiments made before this moment."""
-        ...
+        """List the ids of the transient experiments that were submitted before this moment."""
 
     def used(self, digests: Collection[str]) -> set[str]:
-        """Those of the digests that a sample or an output refers to."""
-        ...
+        """Find those of the digests to which a sample or an output refers."""
 
     def counts(self) -> Mapping[str, int]:
-        """Experiments by status."""
-        ...
+        """Count the experiments by status; every status is there."""
 
-    def close(self) -> None: ...
+    def close(self) -> None:
+        """Let go of the database."""
 
 
 class BlobStore(Protocol):
@@ -101,45 +193,57 @@ class BlobStore(Protocol):
 
     @property
     def temporary_directory(self) -> Path:
-        """Where files are made that `put_file` will move in."""
-        ...
+        """Directory for files that `put_file` will move in."""
 
     def temporary(self, data: bytes) -> Path:
         """Write a file that `put_file` can move in, already on disk."""
-        ...
 
-    def put(self, data: bytes) -> str: ...
+    def put(self, data: bytes) -> str:
+        """Keep these bytes; their digest."""
 
     def put_file(self, path: Path) -> str:
-        """Move a finished file in; the path is gone afterwards."""
-        ...
+        """Move a finished file in; its digest. The path is gone afterwards."""
 
     def lease(self) -> AbstractContextManager[None]:
-        """While this is held, nothing is removed: put files and record them within it."""
-        ...
+        """Prevent removals while this is held: put files and record them within it."""
 
     def path(self, digest: str) -> Path:
-        """Raises `NotFoundError`."""
-        ...
+        """Find the file of this digest.
+
+        Raises
+        ------
+        NotFoundError
+            If there is none.
+        """
 
     def digests(self) -> list[str]:
-        """Every digest that has a file."""
-        ...
+        """List every digest that has a file."""
 
     def remove_unused(self, candidates: Collection[str], used: Callable[[Collection[str]], set[str]]) -> set[str]:
-        """Remove the candidates that ``used``, asked while nobody can put a file, does not name; returns them."""
-        ...
+        """Remove files that nothing refers to.
+
+        Parameters
+        ----------
+        candidates : collection of str
+            Digests to look at.
+        used : callable
+            Names those of them to keep; called while nobody can put a file.
+
+        Returns
+        -------
+        set of str
+            Digests whose files were removed.
+        """
 
     def remove_temporary(self, older_than: datetime) -> int:
-        """Remove what killed processes left half-written before this moment; how many."""
-        ...
+        """Remove what killed processes left half-written before this moment; how many files."""
 
 
 Ended = Callable[[str, str | None], None]
 """``ended(job, failure)``"""
 
 Run = Callable[[Settings, str, Progress], None]
-"""What a worker calls: ``run(settings, job, progress)``"""
+"""``run(settings, job, progress)``: what a worker calls"""
 
 
 class Executor(Protocol):
@@ -151,31 +255,38 @@ class Executor(Protocol):
     """
 
     def start(self, ended: Ended) -> None:
-        """Return when jobs can run. Jobs submitted before are kept."""
-        ...
+        """Return when jobs can run; jobs submitted before are kept."""
 
-    def close(self) -> None: ...
+    def close(self) -> None:
+        """Stop within seconds; jobs that wait or run are forgotten."""
 
     @property
-    def ready(self) -> bool: ...
+    def ready(self) -> bool:
+        """Whether jobs can run now."""
 
     def submit(self, job: str) -> None:
         """Queue a job; one that is queued or runs already stays as it is. Returns at once, from any thread."""
-        ...
 
     def cancel(self, job: str) -> None:
         """Drop a queued job, stop a running one: first politely, then by killing its worker. Returns at once."""
-        ...
 
     def snapshot(self, job: str) -> Snapshot | None:
-        """What is known of a job that waits or runs here; None for others and for one that is being cancelled."""
-        ...
+        """Describe a job that waits or runs here; None for others and for one that is being cancelled."""
 
     @property
     def waiting(self) -> int:
-        """How many jobs wait."""
-        ...
+        """Number of jobs that wait."""
 
     def subscribe(self, listener: Callable[[str], None]) -> Callable[[], None]:
-        """Call ``listener(job)``, from any thread, whenever a snapshot changed or a job left; returns how to end it."""
-        ...
+        """Call a listener whenever a snapshot changed or a job left.
+
+        Parameters
+        ----------
+        listener : callable ``(job)``
+            Called from any thread.
+
+        Returns
+        -------
+        callable
+            Ends the subscription.
+        """

@@ -1,4 +1,4 @@
-"""From what a person asks for to a complete experiment, or to words that say what is wrong with it."""
+"""Preparation of experiments: completes a request, or says what is wrong with it."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -125,14 +125,14 @@ def memory_of(experiment: Experiment, sample: Callable[[str], Sample]) -> int:
     return method.memory_of(sizes, method.params.model_validate(experiment.parameters))
 
 
-def _check_count(method: Method, given: int) -> None:
+def _check_count(method: Method, count: int) -> None:
     least, most = len(method.inputs), len(method.inputs) + method.more
-    if least <= given <= most:
+    if least <= count <= most:
         return
     wanted = str(least) if least == most else f"{least} to {most}"
     names = ", ".join(slot.name for slot in method.inputs)
     noun = "input" if most == 1 else "inputs"
-    raise InvalidInputError(f"The method {method.name} takes {wanted} {noun} ({names}), not {given}.", "inputs")
+    raise InvalidInputError(f"The method {method.name} takes {wanted} {noun} ({names}), not {count}.", "inputs")
 
 
 def _check_answer(method: Method, sizes: list[Size], params: StillParams, request: NewExperiment, deepest: int) -> None:
@@ -192,14 +192,14 @@ def _crop(
     return crop
 
 
-def _params(method: Method, given: Mapping[str, Any]) -> StillParams:
+def _params(method: Method, values: Mapping[str, Any]) -> StillParams:
     try:
-        return method.params.model_validate(dict(given))
+        return method.params.model_validate(dict(values))
     except ValidationError as error:
-        raise explained(error.errors(include_url=False)[0], method) from None
+        raise explain(error.errors(include_url=False)[0], method) from None
 
 
-def explained(fault: ErrorDetails, method: Method) -> InvalidInputError:
+def explain(fault: ErrorDetails, method: Method) -> InvalidInputError:
     """Say what is wrong with a parameter: its name, what it takes and what came."""
     path = [str(part) for part in fault["loc"]]
     field = ".".join(["parameters", *path])

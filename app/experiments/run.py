@@ -1,4 +1,4 @@
-"""What a worker process does with one job: read the crop, run the method, keep and record the outputs."""
+"""Jobs of a worker process: reads the crops, runs the method, keeps and records the outputs."""
 
 import logging
 import time
@@ -67,7 +67,7 @@ def run_job(store: ExperimentStore, blobs: BlobStore, job: str, progress: Progre
         store.fail(experiment_id, _in_words(job, error))
 
 
-def only(pictures: Iterable[Picture], wanted: str) -> Iterator[Picture]:
+def pick(pictures: Iterable[Picture], wanted: str) -> Iterator[Picture]:
     """Run a method until it yields the picture of this name, and no further; what came before is dropped."""
     for picture in pictures:
         if picture.name == wanted:
@@ -100,7 +100,7 @@ def _compute(
     sources = _read(store, blobs, experiment, stages)
     pictures = _pictures(experiment, sources, experiment.depth, threads, stages, blobs.temporary_directory)
     if experiment.transient:
-        pictures = only(pictures, experiment.wanted)
+        pictures = pick(pictures, experiment.wanted)
     with _staged(blobs, pictures) as staged:
         diagnostics = {} if experiment.transient else diagnose(sources, staged, stages)
         stages("writing", 1.0)

@@ -13,7 +13,7 @@ from app.images.crop import Frames, Rectangle
 from app.images.decode import Limits
 from app.images.intake.client import server, take_in
 from app.images.stored_video import frames_have_transparency
-from app.samples import bundled as bundled_files
+from app.samples import read_catalogue
 from app.settings import Settings
 
 log = logging.getLogger(__name__)
@@ -49,7 +49,7 @@ class Samples:
     def add_bundled(self, closing: threading.Event) -> None:
         """Take in the bundled samples that are not stored yet, until ``closing`` is set."""
         known = {sample.id for sample in self._store.bundled_samples()}
-        for entry in bundled_files(self._directory):
+        for entry in read_catalogue(self._directory):
             if closing.is_set():
                 return
             if entry.id in known:

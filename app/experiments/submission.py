@@ -8,7 +8,7 @@ from app.experiments.ports import Executor, ExperimentStore
 from app.experiments.preparation import NewExperiment, memory_of, prepare
 from app.experiments.queue import check_queue
 from app.experiments.samples import Samples
-from app.experiments.tokens import derived_identifier, new_identifier, new_token, token_digest
+from app.experiments.tokens import derive_identifier, new_identifier, new_token, token_digest
 from app.methods.allowed import Allowed
 from app.settings import Settings
 
@@ -46,7 +46,7 @@ class Submission:
 
     def check(self, request: NewExperiment) -> Plan:
         """Plan an experiment without keeping it. Raises as `submit` does, but for `BusyError`."""
-        experiment = self._prepared(request, "")
+        experiment = self._prepare(request, "")
         parameters = experiment.parameters
         return Plan(
             width=parameters["width"],
@@ -85,7 +85,7 @@ class Submission:
         identifier = new_identifier()
         if press is not None:
             # The identifier itself says what was pressed: no second process can take it for another experiment.
-            known = derived_identifier(press, owner, repr(request))
+            known = derive_identifier(press, owner, repr(request))
             try:
                 return self._store.get(known)
             except NotFoundError:
@@ -93,7 +93,7 @@ class Submission:
             except DeletedError:
                 pass  # pressed anew since
         check_queue(self._executor, self._queue_limit)
-        experiment = replace(self._prepared(request, owner), id=identifier, transient=transient)
+        experiment = replace(self._prepare(request, owner), id=identifier, transient=transient)
         try:
             self._store.add(experiment)
         except ConflictError:
@@ -107,7 +107,7 @@ class Submission:
         """Accept an experiment that is made for one answer."""
         return self.submit(request, new_token(), transient=True)
 
-    def _prepared(self, request: NewExperiment, owner: str) -> Experiment:
+    def _prepare(self, request: NewExperiment, owner: str) -> Experiment:
         return prepare(
             request, owner, sample=self._store.sample, transparent=self._samples.has_transparency, allowed=self._allowed
         )

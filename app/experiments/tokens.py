@@ -1,4 +1,4 @@
-"""Identifiers and tokens that nobody can guess."""
+"""Tokens and identifiers that nobody can guess."""
 
 import base64
 import hashlib
@@ -38,21 +38,21 @@ def token_digest(token: str) -> str:
     return hashlib.sha256(token.encode(errors="replace")).hexdigest()
 
 
-def derived_identifier(*parts: str) -> str:
+def derive_identifier(*parts: str) -> str:
     """An identifier as `new_identifier` gives it, always the same for the same parts, one of which must be a secret.
 
     Examples
     --------
-    >>> derived_identifier("secret", "rpn") == derived_identifier("secret", "rpn")
+    >>> derive_identifier("secret", "rpn") == derive_identifier("secret", "rpn")
     True
-    >>> derived_identifier("secret", "rpn") == derived_identifier("secretr", "pn")
+    >>> derive_identifier("secret", "rpn") == derive_identifier("secretr", "pn")
     False
     """
     identifier = _derived(IDENTIFIER_BYTES, "identifier", *parts)
     return f"_{identifier[1:]}" if identifier.startswith("-") else identifier
 
 
-def derived_token(secret: str) -> str:
+def derive_token(secret: str) -> str:
     """A token as `new_token` gives it, always the same for the same secret, which it does not tell."""
     return _derived(TOKEN_BYTES, "token", secret)
 
@@ -62,6 +62,6 @@ def _derived(count: int, *parts: str) -> str:
     return base64.urlsafe_b64encode(digest[:count]).decode()
 
 
-def same(one: str, other: str) -> bool:
+def is_same_secret(one: str, other: str) -> bool:
     """Compare two secrets in constant time."""
     return hmac.compare_digest(one.encode(errors="replace"), other.encode(errors="replace"))

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from app.errors import ConflictError, InvalidInputError
 from app.experiments.experiments import Experiments
-from app.experiments.files.outputs import AnyFormat, Outputs, file_of
+from app.experiments.files.outputs import AnyFormat, Outputs, name_of_file
 from app.experiments.files.renditions import PNG, check_deep
 from app.experiments.housekeeping import Housekeeping
 from app.experiments.model import Experiment, Sample, Status
@@ -79,13 +79,13 @@ class Transient:
             finished = await self._watching.wait(experiment.id, float("inf"))
             if finished.status is not Status.SUCCEEDED:
                 raise ConflictError(finished.error or "The run was cancelled.")
-            made, path = await asyncio.to_thread(self._outputs.get, experiment.id, finished.wanted)
-            media_type = made.media_type
+            answer, path = await asyncio.to_thread(self._outputs.get, experiment.id, finished.wanted)
+            media_type = answer.media_type
             if media_type == PNG:
-                path, media_type = await self._outputs.convert(experiment.id, made.name, file_format, depth)
+                path, media_type = await self._outputs.convert(experiment.id, answer.name, file_format, depth)
             return await asyncio.to_thread(path.read_bytes), media_type
         finally:
-            await asyncio.shield(self._forgotten(begun))
+            await asyncio.shield(self._forget(begun))
 
     def _begin(
         self,
@@ -100,19 +100,20 @@ class Transient:
     ) -> Experiment:
         samples: list[Sample] = []
         try:
-            answer = Answer(file_of(possible_output(method_named(method), output), file_format), depth)
+            answer = Answer(name_of_file(possible_output(method_named(method), output), file_format), depth)
             if depth == 16:
                 check_deep(file_format)
-            for given, what, field in ((crops, "crops", "crop"), (frames, "time ranges", "frames")):
-                if len(given) > len(uploads):
+            for parts, what, field in ((crops, "crops", "crop"), (frames, "time ranges", "frames")):
+                if len(parts) > len(uploads):
                     raise InvalidInputError(
-                        f"There are more {what} ({len(given)}) than files ({len(uploads)}).",
+                        f"There are more {what} ({len(parts)}) than files ({len(uploads)}).",
                         f"inputs.{len(uploads)}.{field}",
                     )
             for upload in uploads:
                 samples.append(self._samples.add(upload, None))
-            parts = zip_longest(samples, crops, frames)
-            inputs = tuple(NewInput(sample.id, crop, time) for sample, crop, time in parts)
+            inputs = tuple(
+                NewInput(sample.id, crop, time) for sample, crop, time in zip_longest(samples, crops, frames)
+            )
             return self._submission.submit_transient(
                 NewExperiment(method, inputs, parameters, listed=False, answer=answer)
             )
@@ -124,7 +125,7 @@ class Transient:
             for upload in uploads:
                 upload.unlink(missing_ok=True)
 
-    async def _forgotten(self, begun: asyncio.Future[Experiment]) -> None:
+    async def _forget(self, begun: asyncio.Future[Experiment]) -> None:
         await asyncio.wait({begun})
         if begun.exception() is None:
             await asyncio.to_thread(self._experiments.discard, begun.result())

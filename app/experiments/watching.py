@@ -47,26 +47,26 @@ class Watching:
     async def wait(self, experiment_id: str, seconds: float) -> Experiment:
         """Return the experiment once it has finished, or as it is after this many seconds."""
         deadline = time.monotonic() + seconds
-        told = True
+        notified = True
         with self._listen(experiment_id) as changed:
             while True:
-                if not told or self._executor.snapshot(experiment_id) is None:
+                if not notified or self._executor.snapshot(experiment_id) is None:
                     experiment = await asyncio.to_thread(self._store.get, experiment_id)
                     if experiment.status.finished:
                         return experiment
                 remaining = deadline - time.monotonic()
                 if remaining <= 0:
                     return await asyncio.to_thread(self._store.get, experiment_id)
-                told = await _within(changed, min(remaining, POLL_SECONDS))
+                notified = await _wait(changed, min(remaining, POLL_SECONDS))
 
     async def watch(self, experiment_id: str) -> AsyncGenerator[Snapshot, None]:
         """Yield every change, several at once if they come fast; end after the finished state."""
         last: Snapshot | None = None
-        told = True
+        notified = True
         with self._listen(experiment_id) as changed:
             while True:
                 found = self._executor.snapshot(experiment_id)
-                if found is None or not told:
+                if found is None or not notified:
                     stored = _snapshot_of(await asyncio.to_thread(self._store.get, experiment_id))
                     found = stored if found is None or stored.status.finished else found
                 if last is None or replace(found, elapsed=0.0) != replace(last, elapsed=0.0):
@@ -74,7 +74,7 @@ class Watching:
                     last = found
                 if found.status.finished:
                     return
-                told = await _within(changed, POLL_SECONDS)
+                notified = await _wait(changed, POLL_SECONDS)
                 await asyncio.sleep(UPDATE_SECONDS)
 
     async def wait_until_left(self, job: str, seconds: float) -> bool:
@@ -85,7 +85,7 @@ class Watching:
                 remaining = deadline - time.monotonic()
                 if remaining <= 0:
                     return False
-                await _within(changed, min(remaining, POLL_SECONDS))
+                await _wait(changed, min(remaining, POLL_SECONDS))
         return True
 
     @contextmanager
@@ -110,11 +110,11 @@ def _snapshot_of(experiment: Experiment) -> Snapshot:
     return Snapshot(experiment.status, fraction=fraction, elapsed=elapsed)
 
 
-async def _within(event: asyncio.Event, seconds: float) -> bool:
+async def _wait(event: asyncio.Event, seconds: float) -> bool:
     """Return when the event is set, or when the seconds have passed; clear it. Whether it was set."""
     with suppress(TimeoutError):
         async with asyncio.timeout(seconds):  # `wait_for` of Python 3.11 drops a cancellation that comes with the event
             await event.wait()
-    told = event.is_set()
+    notified = event.is_set()
     event.clear()
-    return told
+    return notified

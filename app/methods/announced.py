@@ -41,7 +41,7 @@ class Announced:
     condition: str = ""
 
     @property
-    def film(self) -> bool:
+    def video(self) -> bool:
         """Whether it is a video, not a picture (though that may be animated)."""
         return self.media_type.startswith("video/")
 

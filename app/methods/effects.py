@@ -85,7 +85,7 @@ def refuse_deep(output: Announced, deepest: int) -> None:
     InvalidInputError
         At ``depth``.
     """
-    if output.film:
+    if output.video:
         raise InvalidInputError("A video has 8 bits per channel: leave the depth out.", "depth")
     if not output.deep or (output.as_given and deepest == 8):
         whose = "the 8 bits per channel of its sample" if output.deep else "8 bits per channel"

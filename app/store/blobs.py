@@ -1,4 +1,4 @@
-"""Files by the SHA-256 of their content, under one directory."""
+"""Blob store: files by the SHA-256 of their content, under one directory."""
 
 import fcntl
 import hashlib

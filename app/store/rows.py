@@ -1,4 +1,4 @@
-"""Between the domain's records and the database's rows; and the archive's cursor."""
+"""Conversion between the domain's records and the database's rows; and the archive's cursor."""
 
 import base64
 import binascii

@@ -1,4 +1,4 @@
-"""The database's tables, and how a connection to it is set up."""
+"""Schema of the database: its tables, their upgrade, and how a connection is set up."""
 
 import sqlite3
 import time

@@ -1,4 +1,4 @@
-"""Samples and experiments in SQLite or PostgreSQL."""
+"""Experiment store over SQL: samples and experiments in SQLite or PostgreSQL."""
 
 from collections.abc import Collection, Mapping, Sequence
 from datetime import UTC, datetime

@@ -9,7 +9,7 @@ from fastapi import Depends, Request
 from starlette.responses import Response
 
 from app.experiments.service import Service
-from app.experiments.tokens import derived_token, new_token
+from app.experiments.tokens import derive_token, new_token
 from app.settings import Settings
 
 OWNER_COOKIE = "microtexture_owner"
@@ -43,7 +43,7 @@ def pressed(said: str) -> str | None:
 
 def owner_of_press(token: str | None, press: str | None) -> str:
     """Give who is asking a token; the same one for a press that comes twice before its answer brings the cookie."""
-    return token or (derived_token(press) if press else new_token())
+    return token or (derive_token(press) if press else new_token())
 
 
 def remember_owner(request: Request, response: Response, token: str) -> None:

@@ -10,7 +10,7 @@ from fastapi import Request
 from fastapi.templating import Jinja2Templates
 from starlette.responses import Response
 
-from app.experiments.meter import MICRO, STRUCTURED, reading
+from app.experiments.meter import MICRO, STRUCTURED, interpret
 from app.methods.registry import METHODS
 from app.settings import ROOT
 from app.web.prose import mathml, prose
@@ -46,7 +46,7 @@ def meter_place(delta: float) -> float:
     return round(min(100.0, 100 * sqrt(max(delta, 0.0) / METER_END)), 1)
 
 
-TEMPLATES.env.filters.update(label=label, reading=reading, meter_place=meter_place, mathml=mathml, prose=prose)
+TEMPLATES.env.filters.update(label=label, reading=interpret, meter_place=meter_place, mathml=mathml, prose=prose)
 TEMPLATES.env.globals.update(meter_limits=(MICRO, STRUCTURED), meter_end=METER_END)
 
 

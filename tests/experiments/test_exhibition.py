@@ -102,7 +102,7 @@ def test_every_method_is_told_of_once_also_one_that_stands_in_no_group(monkeypat
 def test_made_twice_it_gives_the_same_bytes(filled: Service) -> None:
     digests = [output.digest for output in filled.exhibition.find(WAVES).outputs]
     told = []
-    again = filled.exhibition.fill(threading.Event(), again=True, told=lambda *args: told.append(args))
+    again = filled.exhibition.fill(threading.Event(), again=True, on_done=lambda *args: told.append(args))
     assert again == exhibition.Filled(made=2, without_sample=1)
     assert [output.digest for output in filled.exhibition.find(WAVES).outputs] == digests
     assert told == [(1, 2, WAVES, None), (2, 2, PLASTER, None)]

@@ -7,7 +7,7 @@ import pytest
 
 from app.errors import InvalidInputError
 from app.experiments import meter
-from app.experiments.meter import Index, Meter, reading
+from app.experiments.meter import Index, Meter, interpret
 from app.experiments.model import Sample
 from app.images.crop import Rectangle
 from app.images.png_writer import encode_png
@@ -65,8 +65,8 @@ def test_a_crop_has_the_index_of_its_pixels_however_it_is_read(files, monkeypatc
 def test_a_crop_of_less_than_32_pixels_along_a_side_is_too_small_to_tell(files, size, sigma):
     found = Meter(files).structure(kept(files, noise(80, 100)), Rectangle(0, 40, *size), sigma)
     assert found == Index(None, None)
-    assert reading(found.delta).verdict == "unknown"
-    assert "Too small to tell" in reading(found.delta).words
+    assert interpret(found.delta).verdict == "unknown"
+    assert "Too small to tell" in interpret(found.delta).words
 
 
 def test_a_crop_of_32_pixels_is_large_enough(files):

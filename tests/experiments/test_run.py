@@ -319,7 +319,7 @@ def test_pictures_before_the_wanted_one_are_removed_and_later_ones_not_made(tmp_
             path.touch()
             yield Picture(path.name, path.name, 1, 1, path)
 
-    assert [picture.name for picture in run.only(pictures(), "second")] == ["second"]
+    assert [picture.name for picture in run.pick(pictures(), "second")] == ["second"]
     assert [path.exists() for path in files] == [False, True, False]
 
 

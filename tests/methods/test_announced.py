@@ -76,7 +76,7 @@ def test_the_announced_outputs_are_those_that_come(
         if output.media_type == "image/png":
             assert output.deep == (data[DEPTH_AT] == 16), output.name
         if output.kind == "texture":
-            assert output.deep or output.film
+            assert output.deep or output.video
     possible = [output.name for output in method.outputs]
     assert len(set(possible)) == len(possible)
     assert all(bool(output.condition) for output in method.outputs if output not in announced)

@@ -17,7 +17,7 @@ from app.methods.fields import fields
 from app.methods.model import Method, Source
 from app.methods.params import StillParams
 from app.methods.registry import METHODS
-from app.samples import bundled
+from app.samples import read_catalogue
 from app.settings import ROOT
 from tests.bundled_samples import sample_of
 from tests.methods.runs import run_small, sources_for
@@ -62,7 +62,7 @@ def test_a_method_explains_itself(method: Method) -> None:
 
 @EVERY
 def test_every_figure_is_an_experiment_on_bundled_samples_that_shows_its_outputs(method: Method) -> None:
-    known = {entry.id: entry for entry in bundled(ROOT / "samples")}
+    known = {entry.id: entry for entry in read_catalogue(ROOT / "samples")}
     for figure in method.explanation.figures:
         for exhibit in figure.exhibits:
             inputs = tuple(NewInput(sample, Rectangle.parse(crop)) for sample, crop in exhibit.inputs)

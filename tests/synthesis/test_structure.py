@@ -5,7 +5,7 @@ import pytest
 import scipy.fft
 from PIL import Image
 
-from app.samples import bundled
+from app.samples import read_catalogue
 from app.settings import ROOT
 from app.synthesis.fourier.periodic import periodic_component
 from app.synthesis.gaussian.adsn import adsn
@@ -14,7 +14,7 @@ from app.synthesis.luminance import luminance
 from app.synthesis.structure import CENTRE, Structure, is_too_small, measure_delta, structure_index
 
 NOTHING = Structure(0, 0, 0, 0, 0)
-SAMPLES = {entry.id: entry for entry in bundled(ROOT / "samples")}
+SAMPLES = {entry.id: entry for entry in read_catalogue(ROOT / "samples")}
 
 
 def photograph(name):

@@ -1,4 +1,4 @@
-"""Files that can be made again: bounded, and safe to delete at any time."""
+"""File cache: files that can be made again, bounded in size and safe to delete at any time."""
 
 import os
 from collections.abc import Callable
@@ -30,18 +30,18 @@ class FileCache:
     def get(self, name: str, make: Callable[[], bytes]) -> Path:
         """The file of this name; made if it is not there, perhaps by several threads at once."""
         path = self._directory / name
-        if not _touched(path):
+        if not _touch(path):
             self._add(path, lambda temporary: temporary.write_bytes(make()))
         return path
 
     def file(self, name: str, write: Callable[[Path], None]) -> Path:
         """The same for what takes long: one thread writes it, others wait."""
         path = self._directory / name
-        if not _touched(path):
+        if not _touch(path):
             with self._lock:
                 making = self._making.setdefault(name, Lock())
             with making:
-                if not _touched(path):
+                if not _touch(path):
                     self._add(path, write)
         return path
 
@@ -81,7 +81,7 @@ class FileCache:
                 total -= size
 
 
-def _touched(path: Path) -> bool:
+def _touch(path: Path) -> bool:
     """Note that a file is used; whether it is there."""
     try:
         os.utime(path)

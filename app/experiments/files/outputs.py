@@ -1,11 +1,11 @@
-"""The outputs of an experiment as files: as they are stored, in other formats, at 16 bits."""
+"""Output files of experiments: as they are stored, in other formats, at 16 bits."""
 
 import asyncio
 from pathlib import Path
 from typing import Literal, Protocol
 
 from app.errors import AppError, BusyError, InvalidInputError, NotFoundError
-from app.experiments.files.renditions import DERIVED, PNG, FilmFormat, Renditions, check_deep
+from app.experiments.files.renditions import DERIVED, PNG, Renditions, VideoFormat, check_deep
 from app.experiments.model import Experiment, Output, deep_job, deep_name
 from app.experiments.ports import BlobStore, Executor, ExperimentStore
 from app.experiments.queue import check_queue
@@ -14,7 +14,7 @@ from app.images.convert import Format, read_depth
 from app.methods.effects import possible_output, refuse_deep
 from app.methods.registry import method as method_named
 
-AnyFormat = Format | FilmFormat
+AnyFormat = Format | VideoFormat
 MP4_SUFFIX = "-mp4"  # ends the name of a film's second file: see `app.methods.output.films`
 DEEP_SECONDS = 120.0  # how long a download waits for its output at 16 bits
 
@@ -29,10 +29,10 @@ class Named(Protocol):
     def media_type(self) -> str: ...
 
     @property
-    def film(self) -> bool: ...
+    def video(self) -> bool: ...
 
 
-def file_of(output: Named, file_format: AnyFormat | None) -> str:
+def name_of_file(output: Named, file_format: AnyFormat | None) -> str:
     """Name the output that is this one in this format: a film is two of them.
 
     Raises
@@ -40,7 +40,7 @@ def file_of(output: Named, file_format: AnyFormat | None) -> str:
     InvalidInputError
         At ``format``, if it does not come in this one.
     """
-    if output.film:
+    if output.video:
         if file_format is None or output.media_type == f"video/{file_format}":
             return output.name
         if file_format in ("webm", "mp4"):
@@ -108,13 +108,13 @@ class Outputs:
         """
         experiment = await asyncio.to_thread(self._store.get, experiment_id)
         output = self._output(experiment, name)
-        output = self._output(experiment, file_of(output, file_format or ("webm" if output.film else None)))
+        output = self._output(experiment, name_of_file(output, file_format or ("webm" if output.video else None)))
         if depth == 16:
             check_deep(file_format)
             output = await self._deep(experiment, output)
         if output.media_type != PNG:
             return self._blobs.path(output.digest), output.media_type
-        assert file_format != "webm"  # `file_of` lets these through for films only
+        assert file_format != "webm"  # `name_of_file` lets these through for films only
         assert file_format != "mp4"
         return await asyncio.to_thread(self._renditions.convert, output, file_format or "png", depth)
 
@@ -133,7 +133,7 @@ class Outputs:
 
     async def _deep(self, experiment: Experiment, output: Output) -> Output:
         """The same output at 16 bits; computed from the samples, in a job of its own, if it is not there yet."""
-        if not output.film and read_depth(self._blobs.path(output.digest)) == 16:
+        if not output.video and read_depth(self._blobs.path(output.digest)) == 16:
             return output
         refuse_deep(possible_output(method_named(experiment.method), output.name), experiment.depth)
         name, job = deep_name(output.name), deep_job(experiment.id, output.name)

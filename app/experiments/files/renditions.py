@@ -1,4 +1,4 @@
-"""Files made from stored ones and cached: what a browser shows of a sample, and downloads in other formats."""
+"""Renditions: cached files made from stored ones, for browsers to show and people to download."""
 
 import hashlib
 from collections.abc import Callable
@@ -25,7 +25,7 @@ from app.images.stored_video import read_frame
 from app.images.video.reader import read_first_frame
 from app.images.video.writers import write_video
 
-FilmFormat = Literal["mp4", "webm"]
+VideoFormat = Literal["mp4", "webm"]
 DEEP_FORMATS = ("png", "tiff")
 SIZES = (256, 512, 1024, 2048)
 PREVIEW_NAME = ".preview"
@@ -71,7 +71,7 @@ class Renditions:
         name = f"{_part(sample, frame)}.png"
         return self._cache.get(name, lambda: encode_png(read_frame(stored, frame, sample.width, sample.height)))
 
-    def video(self, sample: Sample, file_format: FilmFormat) -> tuple[Path, str]:
+    def video(self, sample: Sample, file_format: VideoFormat) -> tuple[Path, str]:
         """Make a file that plays of a video, and its media type.
 
         MP4 plays everywhere. WebM has the pixels exactly as they are stored, if the film is not too long for that (see
@@ -121,11 +121,11 @@ class Renditions:
         else:
 
             def both() -> bytes:
-                made = dict(zip(THUMBNAIL_NAMES, make_thumbnails(*stored), strict=True))
-                for each, data in made.items():
+                pictures = dict(zip(THUMBNAIL_NAMES, make_thumbnails(*stored), strict=True))
+                for each, data in pictures.items():
                     if each != name:
                         cached(each, lambda data=data: data)  # type: ignore[misc] # a browser asks for it next
-                return made[name]
+                return pictures[name]
 
             path, media_type = cached(name, both), "image/webp"
         width, height = PREVIEW if name == PREVIEW_NAME else _thumbnail_size(name, crop, texture)
@@ -140,7 +140,7 @@ class Renditions:
 
     def _picture(self, output: Output) -> Path:
         stored = self._blobs.path(output.digest)
-        if not output.film:
+        if not output.video:
             return stored
         return self._cache.get(f"{output.digest}-first.png", lambda: encode_png(read_first_frame(stored)))
 
@@ -150,7 +150,7 @@ def _part(sample: Sample, frame: int) -> str:
     return f"{sample.digest}-{sample.height}-{frame}" if sample.moving else sample.digest
 
 
-def check_deep(file_format: Format | FilmFormat | None) -> None:
+def check_deep(file_format: Format | VideoFormat | None) -> None:
     """Raise `InvalidInputError` if files of this format have no 16 bits per channel."""
     if file_format not in (None, *DEEP_FORMATS):
         raise InvalidInputError(

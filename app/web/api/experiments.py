@@ -11,7 +11,7 @@ from starlette.responses import Response
 
 from app.errors import DeletedError, InvalidInputError, NotFoundError
 from app.experiments.model import Experiment
-from app.experiments.preparation import NewExperiment, explained
+from app.experiments.preparation import NewExperiment, explain
 from app.experiments.service import Service
 from app.experiments.tokens import new_token
 from app.methods.registry import METHODS
@@ -88,7 +88,7 @@ class ExperimentBody(Body):
         except ValidationError as error:
             for fault in error.errors():
                 if fault["type"].endswith("_type"):
-                    raise explained(fault, method) from None
+                    raise explain(fault, method) from None
 
 
 def require_json(request: Request) -> None:

@@ -7,7 +7,7 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import FileResponse, Response
 
 from app.errors import InvalidInputError
-from app.experiments.files.renditions import FilmFormat
+from app.experiments.files.renditions import VideoFormat
 from app.numbers import FAR
 from app.web.api.bodies import IDENTIFIER
 from app.web.api.openapi import EXAMPLE_SAMPLE, OWNER, problems
@@ -133,7 +133,7 @@ async def sample_video(
     request: Request,
     service: ServiceDep,
     file_format: Annotated[
-        FilmFormat,
+        VideoFormat,
         Query(
             alias="format",
             description="MP4 (H.264) plays everywhere; WebM (VP9) has the very pixels of the sample, unless the video "

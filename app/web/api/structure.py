@@ -6,7 +6,7 @@ from fastapi import APIRouter, Query, Request
 from pydantic import BaseModel, Field
 from starlette.concurrency import run_in_threadpool
 
-from app.experiments.meter import Verdict, reading
+from app.experiments.meter import Verdict, interpret
 from app.images.crop import Rectangle
 from app.numbers import FAR
 from app.synthesis.structure import SIGMA
@@ -61,7 +61,7 @@ async def read_structure(
     sample = await run_in_threadpool(service.samples.get, sample_id)
     area = Rectangle.parse(crop) if crop else Rectangle(0, 0, sample.width, sample.height)
     found = await in_upload_thread(request, service.meter.structure, sample, area, sigma, frame)
-    said = reading(found.delta)
+    said = interpret(found.delta)
     return StructureIndex(
         delta=None if found.delta is None else round(found.delta, 4),
         z=None if found.z is None else round(found.z, 2),

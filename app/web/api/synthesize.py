@@ -185,7 +185,7 @@ def _usual_format(request: Request, output: Announced) -> AnyFormat | None:
     """What the caller likes best of those that the output comes in; None if it comes in one only."""
     if output.media_type not in (PNG, WEBM):
         return None
-    return preferred_format(request.headers.get("accept", ""), moving=output.film)
+    return preferred_format(request.headers.get("accept", ""), moving=output.video)
 
 
 def preferred_format(accept: str, *, moving: bool) -> AnyFormat:

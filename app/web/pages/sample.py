@@ -13,7 +13,7 @@ from app.errors import AppError
 from app.experiments.model import Sample
 from app.experiments.service import Service
 from app.methods.registry import method
-from app.samples import bundled
+from app.samples import read_catalogue
 from app.settings import Settings
 from app.web.deps import (
     ServiceDep,
@@ -48,7 +48,7 @@ def sample_page(request: Request, sample_id: str, service: ServiceDep, settings:
 def _choices(service: Service, settings: Settings) -> Choices:
     offered = tuple(service.samples.bundled())
     kept = {sample.id for sample in offered}  # an upload may have any id, and says nothing of the catalogue
-    entries = {entry.id: entry for entry in bundled(settings.samples_dir) if entry.id in kept}
+    entries = {entry.id: entry for entry in read_catalogue(settings.samples_dir) if entry.id in kept}
     return Choices(offered, entries, service.samples.get)
 
 

@@ -8,14 +8,14 @@ from fastapi import APIRouter, Request
 from starlette.responses import Response
 
 from app.errors import InvalidInputError
-from app.experiments.meter import MICRO, STRUCTURED, Index, Reading, reading
+from app.experiments.meter import MICRO, STRUCTURED, Index, Reading, interpret
 from app.experiments.model import Sample
 from app.experiments.service import Service
 from app.gallery.structure import FALSE_ALARM, FORMULAS, MARKS, MISS, STUDY, UNEVEN
 from app.images.crop import Rectangle
 from app.methods.explanations.references import RANDOM_PHASE_TEXTURES, SHARPNESS
 from app.numbers import whole
-from app.samples import bundled
+from app.samples import read_catalogue
 from app.settings import Settings
 from app.web.deps import ServiceDep, SettingsDep
 from app.web.form.address import input_values, sample_url
@@ -39,8 +39,8 @@ class Measured:
     delta: float
 
     @property
-    def reading(self) -> Reading:
-        return reading(self.delta)
+    def interpret(self) -> Reading:
+        return interpret(self.delta)
 
     @property
     def url(self) -> str:
@@ -89,7 +89,9 @@ def structure_page(request: Request, service: ServiceDep, settings: SettingsDep)
 
 def _photographs(service: Service, settings: Settings) -> list[Measured]:
     """Those that have come in so far; a scene is no texture, a clip no photograph: neither has a place on the scale."""
-    entries = {entry.id: entry for entry in bundled(settings.samples_dir) if entry.kind not in ("scene", "moving")}
+    entries = {
+        entry.id: entry for entry in read_catalogue(settings.samples_dir) if entry.kind not in ("scene", "moving")
+    }
     return [
         Measured(sample, entry.title, entry.crop, delta)
         for sample in service.samples.bundled()

@@ -173,7 +173,7 @@ def _pane(
 ) -> Pane:
     """Show an output; ``deltas`` is its structure index, or empty where it was not measured."""
     clip = clip_of(experiment, output)
-    url = address(experiment, output.name) if output.film else shown(experiment, output.name)
+    url = address(experiment, output.name) if output.video else shown(experiment, output.name)
     return Pane(title, url, output.width, output.height, note, page, bool(deltas), next(iter(deltas), None), clip)
 
 

@@ -29,7 +29,7 @@ def shown(experiment: Experiment, name: str) -> str:
 
 def clip_of(experiment: Experiment, output: Output) -> Clip | None:
     """The film that an output is, None for a picture."""
-    if not output.film:
+    if not output.video:
         return None
     other = experiment.output(f"{output.name}{MP4_SUFFIX}")
     files = [output] if other is None else [output, other]
@@ -44,4 +44,4 @@ def clip_of(experiment: Experiment, output: Output) -> Clip | None:
 def moves(experiment: Experiment) -> bool:
     """Whether its texture is a video."""
     texture = experiment.output("texture")
-    return texture is not None and texture.film
+    return texture is not None and texture.video

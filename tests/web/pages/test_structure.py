@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.experiments.meter import Index, reading
+from app.experiments.meter import Index, interpret
 from app.images.crop import Rectangle
 from app.web.pages.structure import SIDE, Measured, placed
 from app.web.templating import TEMPLATES, meter_place
@@ -80,7 +80,7 @@ def test_the_page_places_the_photographs_and_explains_the_index_without_a_script
     assert page.status_code == 200
     assert "<script" not in page.text
     assert 'href="/samples/gravel_gray?crop.x=8&amp;crop.y=8&amp;crop.width=32&amp;crop.height=32"' in page.text
-    assert f'<span class="meter-number">{max(delta, 0):.2f}</span> {reading(delta).verdict}' in page.text
+    assert f'<span class="meter-number">{max(delta, 0):.2f}</span> {interpret(delta).verdict}' in page.text
     assert page.text.count("<math") > 10
     assert "style=" not in page.text  # the security policy would drop it
 
@@ -88,9 +88,9 @@ def test_the_page_places_the_photographs_and_explains_the_index_without_a_script
 @pytest.mark.parametrize("limit", [0.055, 0.075])
 def test_the_number_as_it_is_shown_has_one_word(limit):
     """So the limits lie between two values of its second decimal."""
-    shown = {f"{delta:.2f}": reading(delta).verdict for delta in np.arange(0, 0.2, 0.0011)}
-    assert all(reading(float(number)).verdict == word for number, word in shown.items())
-    assert reading(limit - 1e-6).verdict != reading(limit).verdict
+    shown = {f"{delta:.2f}": interpret(delta).verdict for delta in np.arange(0, 0.2, 0.0011)}
+    assert all(interpret(float(number)).verdict == word for number, word in shown.items())
+    assert interpret(limit - 1e-6).verdict != interpret(limit).verdict
 
 
 @pytest.mark.parametrize(("delta", "word", "width"), [(-0.02, "micro-texture", "0.0"), (0.1, "structured", "50.0")])
