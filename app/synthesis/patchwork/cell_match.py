@@ -59,7 +59,7 @@ def match_cells(
 
 
 def _squares(cells: Cells) -> Ints:
-    """Cut every cell's square to the plane; of one that lies outside, take the border nearest to it."""
+    """Cut to the plane every cell's square, about the place of the plane that is nearest to its centre."""
     half = round(HALF * cells.unit)
     size = np.array((cells.height, cells.width))
     boxes = np.empty((cells.count, 4), np.int64)

@@ -163,3 +163,56 @@ def test_what_the_progress_raises_stops_the_work(stop_at):
     h = image(16, 16)
     mean = h.mean((0, 1), dtype=np.float64)
     stops_at(stop_at, lambda progress: cut_texton(h, mean, 20, 20, 5, progress=progress))
+
+
+def plain_gains(h, height, width, kept):
+    """R along the principal axes, by the formulas of the module's docstring on the whole torus in double precision."""
+    p = np.moveaxis(periodic_component(h).astype(np.float64), 2, 0)
+    p -= p.mean((1, 2), keepdims=True)
+    rows, columns = p.shape[1:]
+    colours, axes = np.linalg.eigh(np.einsum("ayx,byx->ab", p, p) / (rows * columns))
+    colours, axes = colours[::-1], axes.T[::-1]
+    spectra = np.fft.fft2(np.einsum("ab,byx->ayx", axes, p))
+    down, across = (
+        np.maximum(1 - np.abs(np.fft.fftfreq(side) * side) / (4 * kept * side / (side - kept)), 0)
+        for side in (rows, columns)
+    )
+    faded = np.fft.ifft2(spectra[:, None] * spectra[None].conj()) * down[:, None] * across
+    values, vectors = np.linalg.eigh(np.moveaxis(np.fft.fft2(faded), (0, 1), (2, 3)))
+    root = (vectors * np.sqrt(np.maximum(values, 0))[:, :, None, :]) @ vectors.conj().swapaxes(2, 3)
+    kernel = np.fft.ifft2(np.moveaxis(root, (2, 3), (0, 1))).real
+    around = np.arange(kept) - kept // 2
+    kernel = kernel[:, :, around[:, None], around]
+    sums = kernel.sum((2, 3)) / (height * width)
+    covariance = np.einsum("ajyx,bjyx->ab", kernel, kernel) / (height * width) - sums @ sums.T
+
+    def power(matrix, exponent):
+        found, turned = np.linalg.eigh(matrix)
+        return (turned * found**exponent) @ turned.T
+
+    half, inverse = power(covariance, 0.5), power(covariance, -0.5)
+    return np.diagonal(inverse @ power(half @ np.diag(colours) @ half, 0.5) @ inverse)
+
+
+@pytest.mark.parametrize("kept", [3, 5, 9])
+@pytest.mark.parametrize("size", [(16, 21), (40, 50)])
+def test_the_gains_are_those_of_the_formula_in_absolute_units(size, kept):
+    h = image(16, 21)
+    np.testing.assert_allclose(cut(h, *size, kept).gains, plain_gains(h, *size, kept), rtol=1e-3)
+
+
+@pytest.mark.parametrize("channels", [1, 3])
+def test_whole_the_gains_are_the_factor_of_the_extended_texton(channels):
+    """r² = M₂N₂ / (M₁N₁) along every axis: nothing else is lost."""
+    gains = cut(image(16, 21, channels), 40, 50, 99).gains
+    np.testing.assert_allclose(gains, np.sqrt(40 * 50 / (16 * 21)), rtol=2e-3)
+
+
+@pytest.mark.parametrize("channels", [1, 3])
+def test_without_contrast_nothing_is_divided_by_it(channels):
+    """No covariance to be off, no variance to make up for: the figures that are shown are numbers."""
+    h = np.full((8, 9, channels), 77, np.float32)
+    texton = cut(h, 16, 17, 3)
+    assert lag_error(h, texton.spots) == (0, 0)
+    assert np.isfinite(texton.gains).all()
+    assert all(not spot.planes.any() for spot in texton.spots)

@@ -22,11 +22,11 @@ def matched(texture, pattern, cells, candidates, seed=1):
 
 
 def square(centre, cells):
-    """Rows and columns of the plane within three quarters of a spacing of a centre, or the nearest one of them."""
+    """Rows and columns of the plane within three quarters of a spacing of its place that is nearest to a centre."""
     half = round(0.75 * cells.unit)
     rows, columns = (
-        [p for p in range(size) if abs(p - c) <= half] or [min(max(c, 0), size - 1)]
-        for c, size in zip(centre, (cells.height, cells.width), strict=True)
+        [place for place in range(size) if abs(place - min(max(at, 0), size - 1)) <= half]
+        for at, size in zip(centre, (cells.height, cells.width), strict=True)
     )
     return rows, columns
 
@@ -37,10 +37,8 @@ def allowed(cell, cells, rows, columns, shape):
     y, x = cells.centres[cell]
     offsets = [(rows[0] - y, rows[-1] - y), (columns[0] - x, columns[-1] - x)]
     if top < bottom and left < right:
-        offsets = [
-            (min(a, c), max(b, d))
-            for (a, b), (c, d) in zip(offsets, ((top, bottom - 1), (left, right - 1)), strict=True)
-        ]
+        zone = (top, bottom - 1), (left, right - 1)
+        offsets = [(min(a, c), max(b, d)) for (a, b), (c, d) in zip(offsets, zone, strict=True)]
     return [
         (q, r)
         for q in range(-40, shape[0] + 40)

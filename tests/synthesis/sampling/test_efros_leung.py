@@ -105,9 +105,9 @@ def test_the_verbatim_share_counts_pixels_of_the_offset_of_the_left_or_upper_nei
 @pytest.mark.parametrize("coordinate", [0, 1])
 @pytest.mark.parametrize("axis", [0, 1])
 def test_one_coordinate_that_jumps_parts_two_halves_in_either_direction(axis, coordinate):
-    """A single line of pixels, in which each has one neighbour: the second half's first pixel is copied along with none."""
+    """A single line, in which each pixel has one neighbour: the second half's first is copied along with none."""
     shape = (8, 1) if axis == 0 else (1, 8)
-    copied = np.stack(np.indices(shape), 2) + (3, 2)
+    copied = np.stack(np.indices(shape), 2) + np.array((3, 2))
     copied.reshape(8, 2)[4:, coordinate] += 5
     assert verbatim_share(copied) == 100 * 6 / 8
 
