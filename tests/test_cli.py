@@ -237,6 +237,7 @@ def environment(tmp_path: Path) -> dict[str, str]:
     return {**os.environ, "MICROTEXTURE_DATA_DIR": str(tmp_path / "data")}
 
 
+@pytest.mark.slow
 def test_an_interrupt_ends_it_with_130_and_leaves_no_file(tmp_path: Path, environment: dict[str, str]) -> None:
     """Interrupted while the method runs: its progress callback is where the signal is sent.
 
@@ -274,6 +275,7 @@ def test_methods_lists_every_method() -> None:
     assert "alpha" in document["methods"][0]["parameters"]["properties"]
 
 
+@pytest.mark.slow
 def test_prune_says_what_went(environment: dict[str, str]) -> None:
     done = subprocess.run(
         [sys.executable, "-c", "from app.cli import main; main()", "prune", "--older-than", "30d"],

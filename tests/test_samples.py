@@ -82,6 +82,7 @@ def test_an_entry_without_its_file_is_an_error_that_names_it(tmp_path: Path) -> 
         read_catalogue(tmp_path)
 
 
+@pytest.mark.slow
 def test_drawn_samples_come_last_and_can_be_drawn_again(photographs: list[BundledSample], tmp_path: Path) -> None:
     """A grey level of one at most may come of another version of the numerical libraries."""
     drawn = [photograph for photograph in photographs if photograph.kind == "drawn"]
@@ -95,6 +96,7 @@ def test_drawn_samples_come_last_and_can_be_drawn_again(photographs: list[Bundle
         assert np.abs(bundled_pixels - again).max() <= 1
 
 
+@pytest.mark.slow
 def test_the_clips_can_be_made_again(photographs: list[BundledSample]) -> None:
     """H.264 keeps them at 36 dB or better; a frame out of its place has 32 dB at most."""
     script = runpy.run_path(str(ROOT / "scripts" / "drawn_clips.py"))

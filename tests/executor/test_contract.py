@@ -30,6 +30,7 @@ def test_a_job_runs_once_and_its_end_is_told_once(bench: Bench) -> None:
     bench.until(lambda: bench.snapshot("quick") is None)
 
 
+@pytest.mark.slow
 def test_many_jobs_all_end(bench: Bench) -> None:
     names = [f"quick-{number}" for number in range(30)]
     bench.submit(*names)
@@ -143,6 +144,7 @@ def test_a_listener_that_left_is_not_called(bench: Bench) -> None:
     assert bench.job("quick-2") not in heard
 
 
+@pytest.mark.slow
 def test_a_job_that_takes_too_long_ends(tmp_path: Path, shared_bench: Bench) -> None:
     with running(a_bench(shared_bench.kind, tmp_path, workers=1, time_limit=0.2)) as bench:
         bench.submit("polite", "quick")

@@ -191,6 +191,7 @@ def test_an_exhibit_that_nobody_made_is_not_found_but_can_be_prepared(filled: Se
         filled.exhibition.prepare(Exhibit("rpn", (("nothing", "0,0,9,9"),)))
 
 
+@pytest.mark.slow
 def test_the_command_says_what_it_makes(tmp_path: Path, samples: Path) -> None:
     """With a real engine, on what can be made of the drawn samples."""
     environment = {

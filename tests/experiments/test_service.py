@@ -279,6 +279,7 @@ def test_pruning_removes_old_experiments_and_strays_only(
     assert stored() == set()
 
 
+@pytest.mark.slow
 def test_bundled_photographs_are_taken_in_once(settings: Settings, make_service: Callable[..., Service]) -> None:
     settings = settings.model_copy(update={"samples_dir": Path("samples").resolve()})
     first = make_service(settings)

@@ -9,6 +9,8 @@ from app.methods.model import Context, Source
 from app.methods.registry import METHODS
 from app.settings import ROOT
 
+pytestmark = pytest.mark.slow
+
 WAVES = ((3, 10), (11, -4))  # frequencies of the drawing, down and across
 SIDE = 256
 SHOWN = [exhibit for exhibit in exhibits().values() if exhibit.inputs == (("two_sinusoids", "0,0,256,256"),)]

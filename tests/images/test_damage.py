@@ -23,6 +23,8 @@ from app.settings import ROOT
 from tests.images.clips import FULL, animation, lossless, moving, video
 from tests.profiles import examples
 
+pytestmark = pytest.mark.slow
+
 Read = Callable[..., Decoded]
 FILM = moving(8)
 WRITERS: dict[str, Callable[[], bytes]] = {

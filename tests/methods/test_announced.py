@@ -115,6 +115,7 @@ CHANGES += [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "parameter", "value", "beside"), CHANGES)
 @pytest.mark.parametrize("larger", [False, True], ids=["of the crop's size", "larger"])
 def test_a_parameter_changes_what_it_is_announced_to_change_and_nothing_else(

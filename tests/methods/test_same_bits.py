@@ -21,6 +21,8 @@ from app.methods.registry import METHODS
 from app.settings import ROOT
 from tests.methods.bits import PLAIN_CODECS
 
+pytestmark = pytest.mark.slow
+
 THERE = [name for name in __cpu_dispatch__ if __cpu_features__[name]]
 WIDE = [name for name in THERE if name == "X86_V4" or name.startswith("AVX512")]
 BLAS = {"X86_V2": "Nehalem", "X86_V3": "Haswell", "X86_V4": "SkylakeX"}  # kernels by what they need

@@ -58,6 +58,7 @@ def test_mean_and_deviation_are_those_of_200_draws_of_the_gaussian_texture(name,
     assert abs(np.std(draws, ddof=1) / found.deviation - 1) < 4 / np.sqrt(398)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["gravel_gray", "brick_gray"])
 def test_mean_and_deviation_hold_to_a_thousandth_and_two_hundredths(name):
     """20,000 Gaussian textures by transforms of white noise, nothing of the program's own.

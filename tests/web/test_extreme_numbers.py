@@ -14,6 +14,8 @@ from app.methods.model import Method
 from app.methods.registry import METHODS
 from app.web.form.parameters import SHARED, form_name
 
+pytestmark = pytest.mark.slow
+
 DIGITS = "9" * 5000
 # As JSON writes them; Python's reader takes NaN and Infinity, too, and as many digits as it can count.
 NEVER = ("1" + "0" * 320, "9" * 4000, "-1" + "0" * 320, "1e308", "1e999", "-1e999", "NaN", "Infinity", "-Infinity")

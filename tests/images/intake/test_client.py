@@ -139,6 +139,7 @@ def test_a_picture_that_takes_too_long_is_killed(slow: Path, directory: Path) ->
     assert not server_process().children()
 
 
+@pytest.mark.slow
 def test_a_bomb_that_takes_too_much_memory_is_refused(
     tmp_path: Path, directory: Path, png_saying: Callable[..., bytes]
 ) -> None:
@@ -186,6 +187,7 @@ def test_a_killed_server_is_started_again_and_its_children_die_with_it(slow: Pat
     assert take_in(SAMPLES / "tiles02.png", directory, Limits()).width == 256
 
 
+@pytest.mark.slow
 def test_nothing_outlives_a_killed_parent(slow: Path, directory: Path) -> None:
     program = f"""
 from pathlib import Path
@@ -234,6 +236,7 @@ def files() -> dict[str, bytes]:
     return written
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("file_format", ["png", "jpeg", "webp", "tiff"])
 @settings(max_examples=examples(25), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())

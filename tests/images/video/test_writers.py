@@ -191,6 +191,7 @@ print(peak())
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "side", "few"), [("webm", 256, 20), ("mp4", 256, 20), ("webp", 128, 100)])
 def test_memory_does_not_grow_with_the_number_of_frames(tmp_path, kind, side, few):
     """Four times the frames may not cost a quarter of what the further ones have."""

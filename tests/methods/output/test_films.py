@@ -169,6 +169,7 @@ print(peak() - before)
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("channels", [1, 3])
 def test_the_memory_it_says_is_enough_and_not_far_too_much(tmp_path, channels):
     grown = printed(GROWTH, 512, channels, tmp_path)

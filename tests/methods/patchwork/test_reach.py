@@ -35,6 +35,7 @@ def test_every_method_that_has_a_sharpness_says_how_many_patches_count_in_the_sa
     assert len({(field.title, field.description, field.annotation) for field in fields}) == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("method", "more"),
     [*((method, {}) for method in JOINING), (VIDEO_PATCHWORK, MOSAIC)],
@@ -87,6 +88,7 @@ def test_a_sharp_join_needs_the_nearest_patch_alone():
     PATCHWORK.resolve(sizes, PATCHWORK.params(width=4096, height=4096, sharpness=2, blend="sharp"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", [PATCHWORK, TRANSFER], ids=lambda method: method.name)
 @pytest.mark.parametrize("tileable", [True, False])
 def test_the_memory_it_asks_for_covers_what_all_patches_take(method, tileable, tmp_path):

@@ -72,11 +72,13 @@ def test_a_clip_that_is_too_short_is_refused_with_the_longest_interval_that_fits
         VIDEO_PATCHWORK.resolve(sizes, VIDEO_PATCHWORK.params(interval=longest + 1, **asked))
 
 
+@pytest.mark.slow
 @ARRANGED
 def test_its_defaults_suit_a_clip_of_three_seconds(arrangement):
     VIDEO_PATCHWORK.resolve([Size(256, 256, 3, 72)], VIDEO_PATCHWORK.params(arrangement=arrangement))
 
 
+@pytest.mark.slow
 @ARRANGED
 @pytest.mark.parametrize("sharpness", [1, 3, 6])
 def test_the_memory_it_asks_for_covers_what_it_takes(arrangement, sharpness, tmp_path, monkeypatch):

@@ -53,6 +53,7 @@ def test_it_holds_for_any_number_of_channels(channels):
     assert variance(rpn(h, 100, 130, alpha=0.5, window="gaussian")) == pytest.approx(own(h, 100, 130), rel=1e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("window", "alpha"), [("bump", 0.1), ("gaussian", 0.5)])
 def test_adsn_has_it_on_average_over_seeds(window, alpha):
     """Within four standard errors of the mean of 200 draws, which are known to 3 % at most."""

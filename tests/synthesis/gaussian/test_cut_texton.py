@@ -51,6 +51,7 @@ def test_the_covariance_of_the_colours_is_the_samples(size, channels, kept):
         np.testing.assert_allclose(found, wanted, atol=1e-4 * wanted.max() + 1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "place"), [("leaves_forest_floor", (256, 256)), ("rockface_pink", (190, 60))])
 @pytest.mark.parametrize("kept", [65, 15, 1])
 def test_textures_of_photographs_keep_their_colours(name, place, kept):

@@ -75,6 +75,7 @@ def test_it_is_the_normalised_sum_of_translated_spots(sizes, order):
     np.testing.assert_allclose(dsn(spot, order, seed=4), expected, atol=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("order", [2, 30, 10**6])
 def test_mean_and_covariance_are_those_of_the_spot_for_every_n(order):
     spot, draws = sample_spot(image(6, 5), 9, 12), 800
@@ -88,6 +89,7 @@ def test_mean_and_covariance_are_those_of_the_spot_for_every_n(order):
     assert (np.abs(seen.mean(0) - expected) <= 4.5 * error + 1e-4 * expected.max()).all()
 
 
+@pytest.mark.slow
 def test_the_excess_kurtosis_of_a_pixel_falls_as_one_over_n():
     """E (Z − m)⁴ = σ⁴ (3 + κ/n): its mean over the pixels of 1500 draws, within 4 standard errors of that mean."""
     spot, draws = standard_spot("disc", 32, 30, radius=3, mean=0, deviation=1), 1500
@@ -100,6 +102,7 @@ def test_the_excess_kurtosis_of_a_pixel_falls_as_one_over_n():
         assert abs(fourth.mean() - 3 - kurtosis / order) < 4 * error
 
 
+@pytest.mark.slow
 def test_for_large_n_a_pixel_has_the_law_of_the_adsns():
     spot, draws = sample_spot(image(8, 8, 1), 8, 8), 600
     many = np.array([dsn(spot, 10**8, seed=seed)[3, 5, 0] for seed in range(draws)])

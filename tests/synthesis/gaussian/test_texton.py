@@ -115,6 +115,7 @@ def test_its_noise_is_the_adsn_of_the_extended_texton(size):
     assert stats.kstest(np.angle(noise), stats.uniform(-np.pi, 2 * np.pi).cdf).pvalue > LIKELY
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("cut", [None, 3])
 def test_the_covariance_of_many_draws_is_the_autocorrelation_of_the_extended_texton(cut):
     h, draws = image(6, 5, 2), 600

@@ -76,6 +76,7 @@ def test_the_core_of_every_cell_is_an_exact_copy_of_the_sample(sharpness, tileab
         assert (texture[y, x] == h[source[:, 0], source[:, 1]]).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sharpness", [3, 6])
 def test_mean_and_deviation_are_the_samples_in_the_joins_as_everywhere(sharpness):
     """Of a white sample of 256², uniform on 0–255, over 12 draws, which begin at places of at least 180² pixels.

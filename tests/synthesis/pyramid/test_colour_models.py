@@ -55,6 +55,7 @@ def test_a_random_phase_keeps_it_in_every_draw(model, crop):
     assert along_colours(covariance(EXACT[model](h, 1)), covariance(periodic_component(h))) < 1e-3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("crop", CROPS, ids=lambda crop: crop[0])
 @pytest.mark.parametrize("model", ON_AVERAGE)
 def test_other_models_keep_it_on_average(model, crop):

@@ -91,6 +91,7 @@ def test_an_unknown_experiment_is_not_found(site, path):
     assert (response.status_code, response.headers["Content-Type"]) == (404, "application/problem+json")
 
 
+@pytest.mark.slow
 def test_a_server_that_is_told_to_stop_ends_its_streams(tmp_path, until):
     """Over the real command: with a stream open it is gone long before it would be killed, and no error is logged."""
     with socket.create_server(("127.0.0.1", 0)) as listener:

@@ -102,6 +102,7 @@ def test_declared_parameters_are_json_schemas(site):
         assert site.client.get(f"/api/v1/methods/{method['name']}").json() == method
 
 
+@pytest.mark.slow
 def test_no_request_makes_a_route_break_its_word(site, operator, tmp_path):
     """Never a 500, an undeclared status code, header or media type, or an answer beside its schema.
 

@@ -108,6 +108,7 @@ def test_the_curl_snippet_sends_every_parameter_of_the_texture(method: Method) -
         assert crops == [str(source.crop) for source in experiment.inputs]
 
 
+@pytest.mark.slow
 @EVERY
 def test_the_command_line_takes_the_options_of_its_snippet(method: Method) -> None:
     """What it then says is missing are the files."""
@@ -140,6 +141,7 @@ def inputs_at(*samples: str) -> list[dict[str, Any]]:
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("method", "language"), list(zip(METHODS.values(), cycle(("Python", "curl", "Command line")))), ids=METHODS
 )
@@ -151,6 +153,7 @@ def test_a_snippet_of_every_method_runs(site: Any, clip: str, tmp_path: Path, me
     run_snippet(site, record, language, tmp_path)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("language", ["curl", "Command line", "Python"])
 def test_a_snippet_with_a_text_runs_in_every_language(site: Any, tmp_path: Path, language: str) -> None:
     parameters = {"weights": "0.25, 0.5 ,0.25", "strip": 0, "width": 50}
