@@ -337,6 +337,26 @@ def test_a_worker_that_was_killed_is_given_nothing_until_it_is_gone(
     assert "b" in engine.tasks
 
 
+def test_the_workers_of_an_engine_are_asked_for_at_once_when_they_may_have_changed(
+    bench: Bench, clock: Clock, sent: Dispatched, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """When Dask says that one came or went, and when the engine is another one; else once in a while."""
+    monkeypatch.setattr(dask, "WORKERS_SECONDS", 5.0)
+    executor, (first, second) = bench.executor, bench.engines
+    for wait, times in ((4.9, 1), (0.1, 1), (0.1, 2)):
+        clock.now += wait
+        executor._fill()
+        assert len(first.times("workers")) == times
+    executor._on_workers()
+    executor._fill()
+    assert len(first.times("workers")) == 3
+    first.alive = False
+    executor._keep_engine()
+    executor._fill()
+    assert len(second.times("workers")) == 1
+    assert executor.ready
+
+
 def test_a_snapshot_has_what_the_worker_reported_and_the_seconds_since_it_began(
     bench: Bench, clock: Clock, sent: Dispatched
 ) -> None:

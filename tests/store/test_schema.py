@@ -2,6 +2,7 @@
 
 import sqlite3
 import time
+from pathlib import Path
 from typing import Any, cast
 
 import pytest
@@ -103,7 +104,7 @@ def test_the_switch_to_wal_is_given_up_after_the_busy_time(clock: list[float]) -
     assert clock[0] - 100 == pytest.approx(schema.BUSY_SECONDS, abs=0.02)
 
 
-def test_a_connection_survives_a_power_cut_and_keeps_references(tmp_path: Any) -> None:
+def test_a_connection_survives_a_power_cut_and_keeps_references(tmp_path: Path) -> None:
     engine = schema.connect(f"sqlite:///{tmp_path}/below/texture.sqlite3")
     with engine.begin() as connection:
         found = [
@@ -112,3 +113,21 @@ def test_a_connection_survives_a_power_cut_and_keeps_references(tmp_path: Any) -
         ]
     engine.dispose()
     assert found == ["wal", 2, 1]
+
+
+def test_who_will_write_has_the_lock_from_the_beginning_and_who_reads_has_none(tmp_path: Path) -> None:
+    """So a transaction cannot fail half-way, and what is read in one of them is of one moment."""
+    path = tmp_path / "texture.sqlite3"
+    engine = schema.connect(f"sqlite:///{path}")
+    other = sqlite3.connect(path, timeout=0, isolation_level=None)
+    with schema.writing(engine), pytest.raises(sqlite3.OperationalError, match="locked"):
+        other.execute("BEGIN IMMEDIATE")
+    with engine.begin() as connection:
+        count = sa.select(sa.func.count()).select_from(schema.deleted)
+        assert connection.scalar(count) == 0
+        other.execute("INSERT INTO deleted VALUES ('meanwhile')")
+        assert connection.scalar(count) == 0
+    with engine.begin() as connection:
+        assert connection.scalar(count) == 1
+    other.close()
+    engine.dispose()
