@@ -20,7 +20,7 @@ from app.store.sql import SqlStore
 from app.synthesis import __version__
 from app.web import health, problems, uploads
 from app.web.api import docs, events, experiments, methods, outputs, samples, structure, synthesize
-from app.web.api.openapi import document
+from app.web.api.openapi import build_document
 from app.web.middleware.body_limit import BodyLimit
 from app.web.middleware.cross_origin import CrossOrigin
 from app.web.middleware.head_as_get import HeadAsGet
@@ -91,7 +91,7 @@ def create_app(settings: Settings | None = None, service: Service | None = None)
     app.include_router(pages)
     app.mount("/static", StaticFiles(directory=ROOT / "static"), name="static")
     app.mount(docs.SWAGGER_URL, StaticFiles(directory=docs.SWAGGER_FILES), name="swagger")
-    app.openapi = partial(document, app)  # type: ignore[method-assign]
+    app.openapi = partial(build_document, app)  # type: ignore[method-assign]
     return app
 
 

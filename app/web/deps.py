@@ -36,12 +36,12 @@ def owner_token(request: Request) -> str | None:
     return token if _TOKEN.fullmatch(token) else None
 
 
-def pressed(said: str) -> str | None:
+def read_press(text: str) -> str | None:
     """Read the key that `static/js/pages/press.js` puts into a form; what is none counts as not said."""
-    return said if _PRESS.fullmatch(said) else None
+    return text if _PRESS.fullmatch(text) else None
 
 
-def owner_of_press(token: str | None, press: str | None) -> str:
+def choose_owner(token: str | None, press: str | None) -> str:
     """Give who is asking a token; the same one for a press that comes twice before its answer brings the cookie."""
     return token or (derive_token(press) if press else new_token())
 

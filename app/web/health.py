@@ -42,5 +42,5 @@ def readiness(service: ServiceDep) -> Response:
 )
 def metrics(request: Request) -> Response:
     """Tell requests by route and status, their durations, experiments by status, and the queue."""
-    made: Metrics = request.app.state.metrics
-    return Response(made.text(), media_type=made.content_type, headers=_UNKEPT)
+    collected: Metrics = request.app.state.metrics
+    return Response(collected.text(), media_type=collected.content_type, headers=_UNKEPT)

@@ -129,12 +129,12 @@ async def _http_error(request: Request, error: Exception) -> Response:
     if status in {204, 304}:
         return Response(status_code=status, headers=headers)
     if status == 405:
-        headers["Allow"] = ", ".join(_allowed(request))
+        headers["Allow"] = ", ".join(_allowed_methods(request))
     own_words = error.detail and error.detail != HTTPStatus(status).phrase
     return respond(request, status, error.detail if own_words else _DETAILS.get(status, error.detail), headers=headers)
 
 
-def _allowed(request: Request) -> list[str]:
+def _allowed_methods(request: Request) -> list[str]:
     """Every method this address answers: Starlette's own header names those of one route only."""
     methods = [
         method
@@ -144,13 +144,13 @@ def _allowed(request: Request) -> list[str]:
     return ["GET", "HEAD", *methods[1:]] if methods[:1] == ["GET"] else methods
 
 
-async def _unexpected(request: Request, _error: Exception) -> Response:
+async def _unexpected_error(request: Request, _error: Exception) -> Response:
     """Answer without internals (the server logs them), with the headers that no middleware adds to this answer."""
     path = request.scope["path"]
     return respond(request, 500, _DETAILS[500], headers=dict(security_headers(path)))
 
 
-async def _gone_away(_request: Request, _error: Exception) -> Response:
+async def _client_disconnected(_request: Request, _error: Exception) -> Response:
     """Answer who hung up while sending: nobody reads this, and it is no error of ours."""
     return Response(status_code=400)
 
@@ -161,5 +161,5 @@ def install(app: FastAPI, render_error: RenderError) -> None:
     app.add_exception_handler(errors.AppError, _app_error)
     app.add_exception_handler(RequestValidationError, _validation_error)
     app.add_exception_handler(HTTPException, _http_error)
-    app.add_exception_handler(ClientDisconnect, _gone_away)
-    app.add_exception_handler(Exception, _unexpected)
+    app.add_exception_handler(ClientDisconnect, _client_disconnected)
+    app.add_exception_handler(Exception, _unexpected_error)

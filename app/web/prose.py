@@ -28,7 +28,7 @@ def mathml(latex: str) -> Markup:
     >>> mathml(r"x^2")[-53:]
     Markup('<mrow><msup><mi>x</mi><mn>2</mn></msup></mrow></math>')
     """
-    return Markup(_converted(latex, "block"))  # noqa: S704 # written in this repository's own declarations
+    return Markup(_convert(latex, "block"))  # noqa: S704 # written in this repository's own declarations
 
 
 def prose(text: str) -> Markup:
@@ -41,27 +41,27 @@ def prose(text: str) -> Markup:
     """
     words = _FORMULA.split(text)  # text and formulas in turn
     parts = [
-        _converted(part, "inline") if index % 2 else _EMPHASIS.sub(r"<em>\1</em>", escape(part, quote=False))
+        _convert(part, "inline") if index % 2 else _EMPHASIS.sub(r"<em>\1</em>", escape(part, quote=False))
         for index, part in enumerate(words)
     ]
     return Markup("".join(parts))  # noqa: S704 # everything that was not converted is escaped
 
 
 @cache
-def _converted(latex: str, display: Literal["block", "inline"]) -> str:
+def _convert(latex: str, display: Literal["block", "inline"]) -> str:
     math = ElementTree.fromstring(convert(latex, xmlns="", display=display))  # noqa: S314 # written by the converter
     for parent in list(math.iter()):
-        _mend(parent, display)
+        _adjust(parent, display)
     return ElementTree.tostring(math, encoding="unicode")
 
 
-def _mend(parent: ElementTree.Element, display: str) -> None:
+def _adjust(parent: ElementTree.Element, display: str) -> None:
     """Say what the converter leaves to a browser's dictionary of operators, which spaces and stretches it wrongly."""
     before = ""
     for place, child in enumerate(parent):
         text = (child.text or "").strip()
         if child.tag == "mo":
-            _mend_operator(child, text, accent=parent.tag == "mover" and place == 1, sign=before in _BEFORE_SIGN)
+            _adjust_operator(child, text, accent=parent.tag == "mover" and place == 1, sign=before in _BEFORE_SIGN)
         elif child.get("mathvariant") == "double-struck" and text in _DOUBLE_STRUCK:
             child.text = _DOUBLE_STRUCK[text]
         elif child.tag == "mi" and text and "Α" <= text <= "Ω":
@@ -75,7 +75,7 @@ def _mend(parent: ElementTree.Element, display: str) -> None:
         parent.tag = "munder"
 
 
-def _mend_operator(operator: ElementTree.Element, text: str, *, accent: bool, sign: bool) -> None:
+def _adjust_operator(operator: ElementTree.Element, text: str, *, accent: bool, sign: bool) -> None:
     if accent and text in _ACCENTS:
         operator.text = _ACCENTS[text]
         operator.set("stretchy", "false")

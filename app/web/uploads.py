@@ -16,7 +16,7 @@ from starlette.exceptions import HTTPException
 
 from app.errors import TooLargeError
 from app.web.deps import get_settings
-from app.web.middleware.body_limit import size
+from app.web.middleware.body_limit import format_bytes
 
 if TYPE_CHECKING:
     from python_multipart.multipart import MultipartCallbacks
@@ -92,7 +92,7 @@ class _Parts:
         _, options = parse_options_header(self._disposition)
         if b"name" not in options:
             raise HTTPException(400, "A part of the form has no name.")
-        self._name = _decoded(options[b"name"])
+        self._name = _decode(options[b"name"])
         if b"filename" not in options:
             if len(self.fields) >= MAX_FIELDS:
                 raise HTTPException(400, f"The form has more than {MAX_FIELDS} fields.")
@@ -100,28 +100,28 @@ class _Parts:
             return
         self._text = None
         if self._name not in self._names or self._name in self.filenames:
-            wanted = ", ".join(f"'{name}'" for name in self._names)
-            raise HTTPException(400, f"The form has one file a field, in: {wanted}.")
-        self.filenames[self._name] = _decoded(options[b"filename"])
+            names = ", ".join(f"'{name}'" for name in self._names)
+            raise HTTPException(400, f"The form has one file a field, in: {names}.")
+        self.filenames[self._name] = _decode(options[b"filename"])
 
     def on_part_data(self, data: bytes, start: int, end: int) -> None:
         if self._text is None:
             self.pending.append((self._name, data[start:end]))
         elif len(self._text) + end - start > MAX_FIELD_BYTES:
-            raise HTTPException(400, f"The form's field {self._name!r} is longer than {size(MAX_FIELD_BYTES)}.")
+            raise HTTPException(400, f"The form's field {self._name!r} is longer than {format_bytes(MAX_FIELD_BYTES)}.")
         else:
             self._text += data[start:end]
 
     def on_part_end(self) -> None:
         if self._text is not None:
-            self.fields[self._name] = _decoded(bytes(self._text))
+            self.fields[self._name] = _decode(bytes(self._text))
 
     def on_end(self) -> None:
         self.complete = True
 
-    def taken(self) -> list[tuple[str, bytes]]:
-        taken, self.pending = self.pending, []
-        return taken
+    def take(self) -> list[tuple[str, bytes]]:
+        pending, self.pending = self.pending, []
+        return pending
 
 
 @asynccontextmanager
@@ -159,7 +159,7 @@ async def _read(
         parser = MultipartParser(boundary, parts.callbacks())
         async for chunk in request.stream():
             parser.write(chunk)
-            for name, data in parts.taken():
+            for name, data in parts.take():
                 written += len(data)
                 # What is more is read to its end, so that the client sees the answer, but not kept.
                 if written <= limit:
@@ -171,11 +171,11 @@ async def _read(
     if written > limit:
         several = len(parts.filenames) > 1
         what, advice = ("files together are", "smaller ones") if several else ("file is", "a smaller one")
-        raise TooLargeError(f"The {what} larger than {size(limit)}: send {advice}.")
+        raise TooLargeError(f"The {what} larger than {format_bytes(limit)}: send {advice}.")
     if not parts.complete:
         raise HTTPException(400, "The form ends in the middle: send it again.")
-    for name, given in parts.filenames.items():
-        if given and name not in targets:  # an empty file; a browser's part without a name means that none was chosen
+    for name, filename in parts.filenames.items():
+        if filename and name not in targets:  # an empty file; without a file name a browser means that none was chosen
             targets[name] = await anyio.to_thread.run_sync(_open, directory)
     for target in targets.values():
         await anyio.to_thread.run_sync(target.flush)
@@ -195,7 +195,7 @@ def _open(directory: Path) -> BinaryIO:
     return tempfile.NamedTemporaryFile(dir=directory, prefix=PREFIX, delete=False)  # type: ignore[return-value]
 
 
-def _decoded(text: bytes) -> str:
+def _decode(text: bytes) -> str:
     try:
         return text.decode()
     except UnicodeDecodeError:

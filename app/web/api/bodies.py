@@ -34,7 +34,7 @@ class Crop(Body):
     width: Whole = Field(ge=1, le=FAR)
     height: Whole = Field(ge=1, le=FAR)
 
-    def rectangle(self) -> Rectangle:
+    def to_rectangle(self) -> Rectangle:
         return Rectangle(self.x, self.y, self.width, self.height)
 
 
@@ -57,8 +57,8 @@ class InputBody(Body):
         None, description="Of a video. Default: all frames where the method takes a video, else the first one."
     )
 
-    def wanted(self) -> NewInput:
-        crop = None if self.crop is None else self.crop.rectangle()
+    def to_input(self) -> NewInput:
+        crop = None if self.crop is None else self.crop.to_rectangle()
         return NewInput(self.sample, crop, None if self.frames is None else self.frames.frames())
 
 

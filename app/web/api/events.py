@@ -22,7 +22,7 @@ LAST_ID = "end"
 RETRY_MILLISECONDS = 2000
 
 
-async def _followable(
+async def _check_stream(
     experiment_id: ExperimentId,
     service: ServiceDep,
     last_event_id: Annotated[
@@ -39,7 +39,7 @@ async def _followable(
     "/{experiment_id}/events",
     name="experiment_events",
     summary="Follow an experiment",
-    dependencies=[Depends(_followable)],
+    dependencies=[Depends(_check_stream)],
     response_class=EventSourceResponse,
     responses={204: {"description": "You have seen the end (`Last-Event-ID`)."}, **problems(404, 410, 422)},
 )

@@ -63,7 +63,7 @@ class ExperimentBody(Body):
     parameters: dict[str, Any] = Field(default_factory=dict, description="What is left out has its default.")
     listed: bool = Field(True, description="Whether the archive shows it; otherwise only its link leads to it.")
 
-    def requested(self) -> NewExperiment:
+    def to_request(self) -> NewExperiment:
         """Say the same in the service's words.
 
         Raises
@@ -76,15 +76,15 @@ class ExperimentBody(Body):
                 f"There is no method of this name. The methods are: {', '.join(METHODS)}.", "method"
             )
         self._check_types()
-        inputs = tuple(source.wanted() for source in self.inputs)
+        inputs = tuple(source.to_input() for source in self.inputs)
         return NewExperiment(self.method, inputs, self.parameters, self.listed)
 
     def _check_types(self) -> None:
         """Refuse ``"7"`` for 7: the service takes it, for forms and command lines have only text; JSON has numbers."""
         method = METHODS[self.method]
-        given = {name: without_fraction(value) for name, value in self.parameters.items()}
+        values = {name: without_fraction(value) for name, value in self.parameters.items()}
         try:
-            method.params.model_validate(given, strict=True)
+            method.params.model_validate(values, strict=True)
         except ValidationError as error:
             for fault in error.errors():
                 if fault["type"].endswith("_type"):
@@ -119,7 +119,7 @@ _CREATED = {
 )
 async def check_experiment(body: ExperimentBody, service: ServiceDep) -> PlanRecord:
     """Say what it would make and how much memory it would take, or what is wrong with it; nothing is run."""
-    return PlanRecord.made_of(await run_in_threadpool(lambda: service.submission.check(body.requested())))
+    return PlanRecord.from_source(await run_in_threadpool(lambda: service.submission.check(body.to_request())))
 
 
 @router.post(
@@ -155,7 +155,7 @@ async def submit_experiment(
     """
     owner = token or new_token()
     try:
-        experiment = await run_in_threadpool(service.submission.submit, body.requested(), owner)
+        experiment = await run_in_threadpool(service.submission.submit, body.to_request(), owner)
     except (NotFoundError, DeletedError) as error:  # this address exists; what does not is a sample
         raise InvalidInputError(error.message, "inputs") from None
     seconds = wait_seconds(prefer)

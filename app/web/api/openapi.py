@@ -70,10 +70,10 @@ def form_parameters() -> dict[str, Any]:
     }
 
 
-def document(app: FastAPI) -> dict[str, Any]:
+def build_document(app: FastAPI) -> dict[str, Any]:
     """Make the document, once."""
     if app.openapi_schema is None:
-        made = get_openapi(
+        schema = get_openapi(
             title=app.title,
             version=app.version,
             openapi_version=app.openapi_version,
@@ -88,7 +88,7 @@ def document(app: FastAPI) -> dict[str, Any]:
             ],
             routes=app.routes,
         )
-        components = made.setdefault("components", {})
+        components = schema.setdefault("components", {})
         schemas = components.setdefault("schemas", {})
         for unused in ("HTTPValidationError", "ValidationError"):
             schemas.pop(unused, None)
@@ -109,14 +109,14 @@ def document(app: FastAPI) -> dict[str, Any]:
                 "description": "The same token as browsers keep it.",
             },
         }
-        for operation in _operations(made):
+        for operation in _operations(schema):
             _declare_problems(operation)
-        app.openapi_schema = made
+        app.openapi_schema = schema
     return app.openapi_schema
 
 
-def _operations(made: dict[str, Any]) -> Iterable[dict[str, Any]]:
-    for path in made["paths"].values():
+def _operations(schema: dict[str, Any]) -> Iterable[dict[str, Any]]:
+    for path in schema["paths"].values():
         for method, operation in path.items():
             if method != "get":
                 operation["responses"].setdefault("403", {"description": title(403)})

@@ -120,7 +120,7 @@ def experiment_zip(experiment_id: ExperimentId, request: Request, service: Servi
     ]
     name = file_name(experiment, "outputs", ".zip")
     return StreamingResponse(
-        _zipped(json.dumps(record, indent=2), files, experiment.finished_at or datetime.now(UTC)),
+        _write_zip(json.dumps(record, indent=2), files, experiment.finished_at or datetime.now(UTC)),
         media_type="application/zip",
         headers={"Content-Disposition": f'attachment; filename="{name}"', "Cache-Control": "private, no-cache"},
     )
@@ -139,13 +139,13 @@ class _Sink(io.RawIOBase):
         self.chunks.append(bytes(data))  # type: ignore[call-overload]
         return len(self.chunks[-1])
 
-    def taken(self) -> bytes:
+    def take(self) -> bytes:
         data = b"".join(self.chunks)
         self.chunks.clear()
         return data
 
 
-def _zipped(record: str, files: list[tuple[str, FilePath]], moment: datetime) -> Iterator[bytes]:
+def _write_zip(record: str, files: list[tuple[str, FilePath]], moment: datetime) -> Iterator[bytes]:
     """Write a ZIP file, a chunk at a time; pictures are compressed already."""
     sink = _Sink()
     with ZipFile(sink, "w") as archive:
@@ -158,5 +158,5 @@ def _zipped(record: str, files: list[tuple[str, FilePath]], moment: datetime) ->
             with path.open("rb") as source, archive.open(info, "w", force_zip64=True) as target:
                 while chunk := source.read(_CHUNK):
                     target.write(chunk)
-                    yield sink.taken()
-    yield sink.taken()
+                    yield sink.take()
+    yield sink.take()

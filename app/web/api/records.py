@@ -19,7 +19,7 @@ class Record(BaseModel):
     """A JSON answer that is made of a domain object's attributes of the same names."""
 
     @classmethod
-    def made_of(cls, source: object, **others: object) -> Self:
+    def from_source(cls, source: object, **others: object) -> Self:
         """Take ``others`` as they are, and the attributes of ``source`` for the rest; what it lacks stays unset."""
         names = [name for name in cls.model_fields if name not in others and hasattr(source, name)]
         return cls.model_validate({name: getattr(source, name) for name in names} | others, from_attributes=True)
@@ -45,7 +45,7 @@ class SampleRecord(Record):
     @classmethod
     def of(cls, sample: Sample, base: str) -> "SampleRecord":
         url = f"{base}{API}/samples/{sample.id}"
-        return cls.made_of(sample, url=url, image=f"{url}/image")
+        return cls.from_source(sample, url=url, image=f"{url}/image")
 
 
 class SampleList(BaseModel):
@@ -78,7 +78,7 @@ class OutputRecord(Record):
 
     @classmethod
     def of(cls, output: Output, experiment_url: str) -> "OutputRecord":
-        return cls.made_of(output, url=f"{experiment_url}/outputs/{output.name}")
+        return cls.from_source(output, url=f"{experiment_url}/outputs/{output.name}")
 
 
 class StructureRecord(BaseModel):
@@ -143,7 +143,7 @@ class ExperimentRecord(Record):
         url = f"{base}{API}/experiments/{experiment.id}"
         if snapshot is None or snapshot.status.finished or experiment.status.finished:
             snapshot = Snapshot(experiment.status, fraction=float(experiment.status is Status.SUCCEEDED))
-        return cls.made_of(
+        return cls.from_source(
             experiment,
             status=snapshot.status,
             progress=snapshot.fraction,
@@ -170,7 +170,7 @@ class ProgressRecord(Record):
 
     @classmethod
     def of(cls, snapshot: Snapshot) -> "ProgressRecord":
-        return cls.made_of(snapshot, progress=snapshot.fraction, elapsed=round(snapshot.elapsed, 3))
+        return cls.from_source(snapshot, progress=snapshot.fraction, elapsed=round(snapshot.elapsed, 3))
 
 
 class PlanRecord(Record):
@@ -224,7 +224,7 @@ class AnnouncedRecord(Record):
 
     @classmethod
     def of(cls, output: Announced, method: Method) -> "AnnouncedRecord":
-        return cls.made_of(
+        return cls.from_source(
             output,
             depths=[8, 16] if output.deep else [8],
             parameters=[name for name in method.params.model_fields if name in COMMON or output.changed_by(name)],
@@ -247,7 +247,7 @@ class MethodRecord(Record):
 
     @classmethod
     def of(cls, method: Method) -> "MethodRecord":
-        return cls.made_of(
+        return cls.from_source(
             method,
             more_inputs=method.more,
             parameters=method.params.model_json_schema(),

@@ -30,8 +30,8 @@ STILLS: dict[str, AnyFormat] = {
     "image/webp": "webp",
     "image/tiff": "tiff",
 }
-FILMS: dict[str, AnyFormat] = {WEBM: "webm", "video/mp4": "mp4"}
-FORMATS = STILLS | FILMS
+VIDEOS: dict[str, AnyFormat] = {WEBM: "webm", "video/mp4": "mp4"}
+FORMATS = STILLS | VIDEOS
 _DEPTHS: dict[str, Literal[8, 16]] = {"8": 8, "16": 16}
 
 FILES = ("file", "file-2", "file-3", "file-4")
@@ -42,7 +42,7 @@ TIMES = ("time", "time-2", "time-3", "time-4")
 _Part = TypeVar("_Part", Rectangle, Frames)
 
 
-def _numbered(number: int, what: str) -> str:
+def _describe(number: int, what: str) -> str:
     return what if number == 1 else f"The same of input {number}, for methods that take several."
 
 
@@ -55,7 +55,7 @@ _FORM: dict[str, Any] = {
             name: {
                 "type": "string",
                 "contentMediaType": "application/octet-stream",
-                "description": _numbered(
+                "description": _describe(
                     number,
                     "PNG, JPEG, WebP or TIFF, 8 or 16 bits, grey or colour; or a video: MP4, WebM, GIF, animated WebP "
                     "or APNG.",
@@ -67,7 +67,7 @@ _FORM: dict[str, Any] = {
             name: {
                 "type": "string",
                 "pattern": r"^\d{1,6},\d{1,6},\d{1,6},\d{1,6}$",
-                "description": _numbered(
+                "description": _describe(
                     number, "`x,y,width,height` in pixels of the upright picture; default: all of it."
                 ),
                 "examples": ["0,0,256,256"],
@@ -78,7 +78,7 @@ _FORM: dict[str, Any] = {
             name: {
                 "type": "string",
                 "pattern": r"^\d{1,6},\d{1,6}$",
-                "description": _numbered(
+                "description": _describe(
                     number,
                     "`first,count`: a range of a video's frames; default: all of them where the method takes a video, "
                     "else the first.",
@@ -128,9 +128,9 @@ async def synthesize(request: Request, service: ServiceDep) -> Response:
     What would change nothing of the answer is refused, for it may have been meant for another one.
     """
     async with receive_form(request, FILES) as form:
-        wanted = _wanted(request, form)
-        running = asyncio.ensure_future(service.transient.synthesize(**wanted))
-        hung_up = asyncio.ensure_future(_hung_up(request))
+        arguments = _read_arguments(request, form)
+        running = asyncio.ensure_future(service.transient.synthesize(**arguments))
+        hung_up = asyncio.ensure_future(_wait_for_disconnect(request))
         try:
             await asyncio.wait({running, hung_up}, return_when=asyncio.FIRST_COMPLETED)
             if not running.done():
@@ -142,26 +142,26 @@ async def synthesize(request: Request, service: ServiceDep) -> Response:
             hung_up.cancel()
             running.cancel()
             await asyncio.wait({running, hung_up})
-    name = f"{wanted['method']}-{wanted['output']}{SUFFIXES[media_type]}"
+    name = f"{arguments['method']}-{arguments['output']}{SUFFIXES[media_type]}"
     headers = {"Content-Disposition": f'inline; filename="{name}"', "Cache-Control": "no-store", "Vary": "Accept"}
     return Response(picture, media_type=media_type, headers=headers)
 
 
-def _wanted(request: Request, form: Form) -> dict[str, Any]:
+def _read_arguments(request: Request, form: Form) -> dict[str, Any]:
     """Read the form as the service's arguments; what is left empty counts as left out."""
     fields = {name: value.strip() for name, value in form.fields.items() if value.strip()}
     if form.file is None:
         raise InvalidInputError("Send a picture or a clip in the form's field 'file'.", "file")
-    for missing, given in pairwise(FILES):
-        if given in form.files and missing not in form.files:
-            raise InvalidInputError(f"The form has a file in '{given}' and none in '{missing}'.", missing)
+    for missing, name in pairwise(FILES):
+        if name in form.files and missing not in form.files:
+            raise InvalidInputError(f"The form has a file in '{name}' and none in '{missing}'.", missing)
     method = fields.pop("method", "")
     if method not in METHODS:
         raise InvalidInputError(
             f"Name a method in the field 'method'. The methods are: {', '.join(METHODS)}.", "method"
         )
-    crops = _parts(Rectangle.parse, CROPS, fields)
-    times = _parts(Frames.parse, TIMES, fields)
+    crops = _pop_parts(Rectangle.parse, CROPS, fields)
+    times = _pop_parts(Frames.parse, TIMES, fields)
     output = possible_output(METHODS[method], fields.pop("output", "texture"))
     file_format = fields.pop("format", None)
     if file_format is not None and file_format not in FORMATS.values():
@@ -176,29 +176,29 @@ def _wanted(request: Request, form: Form) -> dict[str, Any]:
         "frames": times,
         "parameters": fields,
         "output": output.name,
-        "file_format": file_format or _usual_format(request, output),
+        "file_format": file_format or _choose_format(request, output),
         "depth": None if depth is None else _DEPTHS[depth],
     }
 
 
-def _usual_format(request: Request, output: Announced) -> AnyFormat | None:
+def _choose_format(request: Request, output: Announced) -> AnyFormat | None:
     """What the caller likes best of those that the output comes in; None if it comes in one only."""
     if output.media_type not in (PNG, WEBM):
         return None
-    return preferred_format(request.headers.get("accept", ""), moving=output.video)
+    return negotiate_format(request.headers.get("accept", ""), moving=output.video)
 
 
-def preferred_format(accept: str, *, moving: bool) -> AnyFormat:
+def negotiate_format(accept: str, *, moving: bool) -> AnyFormat:
     """Choose the format that an ``Accept`` header likes best; PNG, or WebM, if it likes none or several as much.
 
     Examples
     --------
-    >>> [preferred_format(accept, moving=False) for accept in ("image/webp,image/png;q=0.8", "image/*", "video/mp4")]
+    >>> [negotiate_format(accept, moving=False) for accept in ("image/webp,image/png;q=0.8", "image/*", "video/mp4")]
     ['webp', 'png', 'png']
-    >>> [preferred_format(accept, moving=True) for accept in ("video/mp4", "image/webp,*/*")]
+    >>> [negotiate_format(accept, moving=True) for accept in ("video/mp4", "image/webp,*/*")]
     ['mp4', 'webm']
     """
-    formats, usual = (FILMS, FILMS[WEBM]) if moving else (STILLS, STILLS[PNG])
+    formats, usual = (VIDEOS, VIDEOS[WEBM]) if moving else (STILLS, STILLS[PNG])
     likings: dict[AnyFormat, float] = {}
     for part in accept.lower().split(","):
         media, *options = (piece.strip() for piece in part.split(";"))
@@ -212,7 +212,7 @@ def preferred_format(accept: str, *, moving: bool) -> AnyFormat:
     return usual if best <= 0 or likings.get(usual) == best else next(name for name in likings if likings[name] == best)
 
 
-def _parts(parse: Callable[[str], _Part], names: Sequence[str], fields: dict[str, str]) -> list[_Part | None]:
+def _pop_parts(parse: Callable[[str], _Part], names: Sequence[str], fields: dict[str, str]) -> list[_Part | None]:
     """Read the fields of these names, and take them out; None for one that is left out, none at the end."""
     parts: list[_Part | None] = []
     for name in names:
@@ -242,6 +242,6 @@ def _form_field(field: str | None) -> str | None:
     return names[int(index)] if int(index) < len(names) else "method"
 
 
-async def _hung_up(request: Request) -> None:
+async def _wait_for_disconnect(request: Request) -> None:
     while cast(dict[str, Any], await request.receive())["type"] != "http.disconnect":
         pass

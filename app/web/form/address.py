@@ -14,8 +14,8 @@ from app.methods.fields import fields
 from app.methods.model import Method, Size
 from app.methods.registry import METHODS, method
 from app.web.form.draft import SIZES, Draft
-from app.web.form.inputs import Choices, crop_names, further, most, optional, prefix, time_names
-from app.web.form.parameters import MOVING, form_name, own_fields, shared
+from app.web.form.inputs import Choices, crop_names, further_numbers, is_optional, max_inputs, prefix, time_names
+from app.web.form.parameters import VIDEO_FIELDS, form_name, own_fields, shared_names
 from app.web.form.short_address import expand
 
 STILL = Frames()
@@ -71,7 +71,7 @@ def from_query(sample: Sample, choices: Choices, query: Mapping[str, str]) -> Dr
     query = expand(sample, choices, chosen, query)
     values = _defaults(sample, choices, chosen)
     known = {name: text for name, text in query.items() if name in values and name != "method"}
-    for number in further():
+    for number in further_numbers():
         name = f"{prefix(number)}sample"
         if known.get(name) and not _exists(choices, known[name]):
             known = {key: text for key, text in known.items() if not key.startswith(prefix(number))}
@@ -121,10 +121,10 @@ def input_values(number: int, crop: Rectangle, frames: Frames = STILL) -> dict[s
 def _fields(values: Mapping[str, str], chosen: Method | None) -> Iterator[tuple[str, str | None]]:
     """Give each field that counts, in the order of the form, with its default; None where it is always written."""
     yield "method", None
-    for number in range(1, most(chosen) + 1 if chosen else 2):
+    for number in range(1, max_inputs(chosen) + 1 if chosen else 2):
         name = f"{prefix(number)}sample"
         if number > 1:
-            yield name, "" if optional(number) else None
+            yield name, "" if is_optional(number) else None
         if number == 1 or values.get(name):
             yield from ((part, "") for part in time_names(number))
             yield from ((part, None if number == 1 else "") for part in crop_names(number))
@@ -135,16 +135,16 @@ def _fields(values: Mapping[str, str], chosen: Method | None) -> Iterator[tuple[
         yield form_name(chosen, entry.name), entry.default
     yield "size", "1"
     sides = ("width", "height") if values.get("size") == "free" else ()
-    moving = [entry.name for entry in MOVING if entry.name in shared(chosen)]
+    moving = [entry.name for entry in VIDEO_FIELDS if entry.name in shared_names(chosen)]
     defaults = {entry.name: entry.default for entry in fields(chosen.params)}
     yield from ((name, defaults[name]) for name in (*sides, *moving, "seed"))
     yield "unlisted", ""
 
 
 def _defaults(sample: Sample, choices: Choices, chosen: Method) -> dict[str, str]:
-    values = {"method": chosen.name, "size": "1", "unlisted": "", **input_values(1, choices.start(sample))}
-    for number in further():
-        values[f"{prefix(number)}sample"] = "" if optional(number) else choices.other(sample, number)
+    values = {"method": chosen.name, "size": "1", "unlisted": "", **input_values(1, choices.suggest_crop(sample))}
+    for number in further_numbers():
+        values[f"{prefix(number)}sample"] = "" if is_optional(number) else choices.suggest_sample(sample, number)
         values |= dict.fromkeys((*crop_names(number), *time_names(number)), "")
     for declared in (chosen, *METHODS.values()):
         for entry in fields(declared.params):

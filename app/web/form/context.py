@@ -14,8 +14,8 @@ from app.methods.registry import METHODS
 from app.samples import BundledSample
 from app.web.form.address import sample_url
 from app.web.form.draft import SIZES, Draft
-from app.web.form.inputs import ORDINALS, SIDES, Choices, further, most, optional, prefix
-from app.web.form.parameters import MOVING, SHARED, form_name, own_fields, shared
+from app.web.form.inputs import ORDINALS, SIDES, Choices, further_numbers, is_optional, max_inputs, prefix
+from app.web.form.parameters import SHARED, VIDEO_FIELDS, form_name, own_fields, shared_names
 
 
 @dataclass(frozen=True)
@@ -78,16 +78,16 @@ class MethodForm:
 
 def form_context(sample: Sample, choices: Choices, draft: Draft) -> dict[str, Any]:
     """Give the template all of the form but what belongs to this one request."""
-    inputs = [InputForm(1, "First sample", "", "", False, (), _offer(sample, choices, sample))]
-    inputs += [_further(sample, choices, draft, number) for number in further()]
+    inputs = [InputForm(1, "First sample", "", "", False, (), _make_offer(sample, choices, sample))]
+    inputs += [_make_further(sample, choices, draft, number) for number in further_numbers()]
     return {
         "sample": sample,
         "draft": draft,
         "inputs": inputs,
         "sides": SIDES,
-        "methods": [_method(method, draft, sample, choices) for method in METHODS.values()],
+        "methods": [_make_method(method, draft, sample, choices) for method in METHODS.values()],
         "shared": fields(StillParams),
-        "moving": MOVING,
+        "moving": VIDEO_FIELDS,
         "sizes": SIZES,
         "targets": {
             "method": f"method-{next(iter(METHODS))}",
@@ -98,7 +98,7 @@ def form_context(sample: Sample, choices: Choices, draft: Draft) -> dict[str, An
     }
 
 
-def _offer(entry: Sample, choices: Choices, page: Sample) -> Offer:
+def _make_offer(entry: Sample, choices: Choices, page: Sample) -> Offer:
     kind = "clip" if entry.moving else "photograph"
     return Offer(
         entry.id,
@@ -107,12 +107,12 @@ def _offer(entry: Sample, choices: Choices, page: Sample) -> Offer:
         entry.height,
         entry.frames,
         entry.rate,
-        choices.start(entry),
+        choices.suggest_crop(entry),
         choices.entries.get(entry.id),
     )
 
 
-def _further(sample: Sample, choices: Choices, draft: Draft, number: int) -> InputForm:
+def _make_further(sample: Sample, choices: Choices, draft: Draft, number: int) -> InputForm:
     offered = {entry.id: entry for entry in choices.samples}
     if sample.id not in offered:
         offered = {sample.id: sample, **offered}
@@ -120,17 +120,17 @@ def _further(sample: Sample, choices: Choices, draft: Draft, number: int) -> Inp
     if chosen and chosen not in offered:
         with suppress(NotFoundError):  # the message is at the field
             offered[chosen] = choices.find(chosen)
-    offers = tuple(_offer(entry, choices, sample) for entry in offered.values())
+    offers = tuple(_make_offer(entry, choices, sample) for entry in offered.values())
     shown = next((offer for offer in offers if offer.id == chosen), None)
     title = f"{ORDINALS[number - 1].capitalize()} sample"
-    return InputForm(number, title, prefix(number), f"input-{number}-", optional(number), offers, shown)
+    return InputForm(number, title, prefix(number), f"input-{number}-", is_optional(number), offers, shown)
 
 
-def _method(method: Method, draft: Draft, sample: Sample, choices: Choices) -> MethodForm:
+def _make_method(method: Method, draft: Draft, sample: Sample, choices: Choices) -> MethodForm:
     own = own_fields(method)
     advanced = tuple(entry for entry in own if entry.advanced)
     names = {form_name(method, entry.name): entry.default for entry in advanced}
-    takes = range(1, most(method) + 1)
+    takes = range(1, max_inputs(method) + 1)
     lacks_clip = method.inputs[0].moving and not sample.moving
     return MethodForm(
         method,
@@ -139,17 +139,17 @@ def _method(method: Method, draft: Draft, sample: Sample, choices: Choices) -> M
         takes,
         tuple(number for number in takes if method.slot(number - 1).moving),
         tuple(entry.title for entry in method.inputs) if len(takes) > 1 and not method.more else (),
-        tuple(name for name in shared(method) if name not in SHARED),
+        tuple(name for name in shared_names(method) if name not in SHARED),
         method.size is first_size,
         any(name in draft.errors or draft.values.get(name, "") != default for name, default in names.items()),
         lacks_clip,
-        _clips(method, sample, choices) if lacks_clip else {},
+        _link_clips(method, sample, choices) if lacks_clip else {},
     )
 
 
-def _clips(method: Method, sample: Sample, choices: Choices) -> dict[str, str]:
+def _link_clips(method: Method, sample: Sample, choices: Choices) -> dict[str, str]:
     """Lead to the form of each bundled clip; where the method takes a still picture besides, with this one as that."""
     values = {"method": method.name}
-    if still := [number for number in range(2, most(method) + 1) if not method.slot(number - 1).moving]:
+    if still := [number for number in range(2, max_inputs(method) + 1) if not method.slot(number - 1).moving]:
         values[f"{prefix(still[0])}sample"] = sample.id
     return {clip.title or clip.id: sample_url(clip.id, values) for clip in choices.samples if clip.moving}

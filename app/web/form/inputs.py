@@ -33,30 +33,30 @@ class Choices:
     entries: Mapping[str, BundledSample]
     find: Callable[[str], Sample]
 
-    def start(self, sample: Sample) -> Rectangle:
+    def suggest_crop(self, sample: Sample) -> Rectangle:
         """Start with the suggested crop, or with the middle of a photograph, which is rarely one texture as a whole."""
         if sample.id in self.entries:
             return self.entries[sample.id].crop
         width, height = min(sample.width, START), min(sample.height, START)
         return Rectangle((sample.width - width) // 2, (sample.height - height) // 2, width, height)
 
-    def other(self, sample: Sample, number: int) -> str:
+    def suggest_sample(self, sample: Sample, number: int) -> str:
         """Name the sample that input ``number`` has at first: a photograph, which does for every further input."""
         others = [entry.id for entry in self.samples if entry.id != sample.id and not entry.moving] or [sample.id]
         return others[(number - 2) % len(others)]
 
 
-def most(method: Method) -> int:
+def max_inputs(method: Method) -> int:
     """How many inputs a method takes at most."""
     return len(method.inputs) + method.more
 
 
-def further() -> range:
+def further_numbers() -> range:
     """The numbers of the inputs, from 2 on, that some method takes."""
-    return range(2, max(most(method) for method in METHODS.values()) + 1)
+    return range(2, max(max_inputs(method) for method in METHODS.values()) + 1)
 
 
-def optional(number: int) -> bool:
+def is_optional(number: int) -> bool:
     """Whether every method can do without this input."""
     return all(len(method.inputs) < number for method in METHODS.values())
 
@@ -97,22 +97,22 @@ def read_inputs(
     a clip a still input takes the first frame of the time range.
     """
     read = {}
-    for number in range(1, most(method) + 1):
+    for number in range(1, max_inputs(method) + 1):
         found: Sample | None = sample
         if number > 1:
-            found = _chosen(number, number <= len(method.inputs), choices, values, errors)
+            found = _find_sample(number, number <= len(method.inputs), choices, values, errors)
         if found is None:
             continue
         numbers = [values.get(name, "").strip() for name in crop_names(number)]
         empty = number > 1 and not any(numbers)
-        crop = choices.start(found) if empty else _crop(found, numbers, f"{prefix(number)}crop", errors)
-        frames = _frames(found, method.slot(number - 1), number, values, errors)
+        crop = choices.suggest_crop(found) if empty else _read_crop(found, numbers, f"{prefix(number)}crop", errors)
+        frames = _read_frames(found, method.slot(number - 1), number, values, errors)
         if crop is not None:
             read[number] = NewInput(found.id, crop, frames)
     return read
 
 
-def _chosen(
+def _find_sample(
     number: int, needed: bool, choices: Choices, values: Mapping[str, str], errors: dict[str, str]
 ) -> Sample | None:
     field = f"{prefix(number)}sample"
@@ -128,19 +128,21 @@ def _chosen(
         return None
 
 
-def _crop(sample: Sample, numbers: list[str], field: str, errors: dict[str, str]) -> Rectangle | None:
-    wrong = [f"got {said(text)} for {side}" for side, text in zip(SIDES, numbers, strict=True) if _number(text) is None]
+def _read_crop(sample: Sample, numbers: list[str], field: str, errors: dict[str, str]) -> Rectangle | None:
+    wrong = [
+        f"got {said(text)} for {side}" for side, text in zip(SIDES, numbers, strict=True) if _parse_number(text) is None
+    ]
     if wrong:
         errors[field] = f"{FOUR_NUMBERS}; {', '.join(wrong)}." + (OR_NONE if field != "crop" else "")
         return None
     try:
-        return Rectangle(*(_number(text) or 0 for text in numbers)).check_within(sample.width, sample.height)
+        return Rectangle(*(_parse_number(text) or 0 for text in numbers)).check_within(sample.width, sample.height)
     except InvalidInputError as error:
         errors[field] = error.message
     return None
 
 
-def _number(text: str) -> int | None:
+def _parse_number(text: str) -> int | None:
     """The whole number that a person typed, None if it is none."""
     try:
         return whole(plain(text, whole=True))
@@ -148,19 +150,19 @@ def _number(text: str) -> int | None:
         return None
 
 
-def _frames(
-    sample: Sample, wanted: Slot, number: int, values: Mapping[str, str], errors: dict[str, str]
+def _read_frames(
+    sample: Sample, slot: Slot, number: int, values: Mapping[str, str], errors: dict[str, str]
 ) -> Frames | None:
     if not sample.moving:
         return None
     first, count = (values.get(name, "").strip() for name in time_names(number))
-    given = {"the first frame": first or "0"} | ({"their number": count} if wanted.moving and count else {})
-    wrong = [f"got {said(text)} for {name}" for name, text in given.items() if _number(text) is None]
+    given = {"the first frame": first or "0"} | ({"their number": count} if slot.moving and count else {})
+    wrong = [f"got {said(text)} for {name}" for name, text in given.items() if _parse_number(text) is None]
     if wrong:
-        errors[f"{prefix(number)}time"] = f"{TWO_NUMBERS if wanted.moving else ONE_NUMBER}; {', '.join(wrong)}."
+        errors[f"{prefix(number)}time"] = f"{TWO_NUMBERS if slot.moving else ONE_NUMBER}; {', '.join(wrong)}."
         return None
     try:
-        return read_range(sample, first, count if wanted.moving else "1")
+        return read_range(sample, first, count if slot.moving else "1")
     except InvalidInputError as error:
         errors[f"{prefix(number)}time"] = error.message
     return None

@@ -17,16 +17,16 @@ FAMILIES = (
     LoopParams,
     SeamlessParams,
 )  # each has all of the one before; asked once
-MOVING = tuple(entry for entry in fields(SeamlessParams) if entry.name not in SHARED)
+VIDEO_FIELDS = tuple(entry for entry in fields(SeamlessParams) if entry.name not in SHARED)
 
 
-def shared(method: Method) -> tuple[str, ...]:
+def shared_names(method: Method) -> tuple[str, ...]:
     """Name the parameters of a method that are asked once for it and others.
 
     Examples
     --------
     >>> from app.methods.registry import METHODS
-    >>> shared(METHODS["rpn"])
+    >>> shared_names(METHODS["rpn"])
     ('width', 'height', 'seed')
     """
     families = [family for family in FAMILIES if issubclass(method.params, family)]
@@ -35,12 +35,12 @@ def shared(method: Method) -> tuple[str, ...]:
 
 def own_fields(method: Method) -> tuple[FormField, ...]:
     """List the fields of a method beside those that it shares with others."""
-    return tuple(entry for entry in fields(method.params) if entry.name not in shared(method))
+    return tuple(entry for entry in fields(method.params) if entry.name not in shared_names(method))
 
 
 def form_name(method: Method, name: str) -> str:
     """Name a parameter as the form does: ``rpn.alpha``, but ``seed``, which is asked once for all methods."""
-    return name if name in shared(method) else f"{method.name}.{name}"
+    return name if name in shared_names(method) else f"{method.name}.{name}"
 
 
 @dataclass(frozen=True)
@@ -65,20 +65,20 @@ def parse(method: Method, submitted: Mapping[str, str]) -> Parsed:
     Parsed
     """
     declared = fields(method.params)
-    given: dict[str, Any] = {}
+    values: dict[str, Any] = {}
     wrong: dict[str, str] = {}
     for entry in declared:
         text = submitted.get(form_name(method, entry.name), "").strip()
         if entry.kind == "switch":
-            given[entry.name] = bool(text)
+            values[entry.name] = bool(text)
         elif text:
             try:
-                given[entry.name] = _written(entry, text)
+                values[entry.name] = _normalise(entry, text)
             except ValueError:
                 wrong[entry.name] = requirement(entry)
     parameters: dict[str, Any] = {}
     try:
-        parameters = method.params.model_validate(given).model_dump(mode="json", exclude_unset=True)
+        parameters = method.params.model_validate(values).model_dump(mode="json", exclude_unset=True)
     except ValidationError as error:
         entries = {entry.name: entry for entry in declared}
         problems = {str(problem["loc"][0]): problem["msg"] for problem in error.errors() if problem["loc"]}
@@ -88,6 +88,6 @@ def parse(method: Method, submitted: Mapping[str, str]) -> Parsed:
     return Parsed(errors=errors) if errors else Parsed(parameters)
 
 
-def _written(entry: FormField, text: str) -> str:
+def _normalise(entry: FormField, text: str) -> str:
     """Read a number as people write them, and leave other texts as they are."""
     return plain(text, whole=entry.kind == "integer") if entry.kind in {"integer", "number"} else text

@@ -11,14 +11,14 @@ from app.errors import InvalidInputError, NotFoundError
 from app.experiments.model import Sample
 from app.images.crop import Rectangle
 from app.methods.model import Method
-from app.web.form.inputs import ORDINALS, Choices, crop_names, further, prefix, read_range, time_names
+from app.web.form.inputs import ORDINALS, Choices, crop_names, further_numbers, prefix, read_range, time_names
 from app.web.form.parameters import form_name, own_fields
 
 
 def expand(sample: Sample, choices: Choices, chosen: Method, query: Mapping[str, str]) -> dict[str, str]:
     """Write what a query says in short by the form's names. What is wrong is left out; the form's own names win."""
     found = _crop(1, sample, query.get("crop", "")) | _time(1, sample, query.get("time", ""))
-    for number in further():
+    for number in further_numbers():
         source, _, time = query.get(ORDINALS[number - 1], "").partition("@")
         name, _, corners = source.partition(":")
         with suppress(NotFoundError):

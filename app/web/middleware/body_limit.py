@@ -31,7 +31,7 @@ class BodyLimit:
         is_form = headers.get("content-type", "").lower().startswith("multipart/form-data")
         limit = self.upload + FORM_BYTES if is_form else MEBIBYTE
         what, bound = ("upload", self.upload) if is_form else ("body", limit)
-        detail = f"The {what} is larger than {size(bound)}: send a smaller one."
+        detail = f"The {what} is larger than {format_bytes(bound)}: send a smaller one."
         declared = headers.get("content-length", "")
         if declared.isdigit() and int(declared) > limit:
             if headers.get("expect", "").lower() != "100-continue":
@@ -40,7 +40,7 @@ class BodyLimit:
             return
         received = 0
 
-        async def limited() -> Message:
+        async def receive_limited() -> Message:
             nonlocal received
             message = await receive()
             received += len(message.get("body", b""))
@@ -50,7 +50,7 @@ class BodyLimit:
                 raise HTTPException(413, detail)
             return message
 
-        await self.app(scope, limited, send)
+        await self.app(scope, receive_limited, send)
 
 
 async def _discard(receive: Receive, at_most: int) -> None:
@@ -62,12 +62,12 @@ async def _discard(receive: Receive, at_most: int) -> None:
             return
 
 
-def size(count: int) -> str:
+def format_bytes(count: int) -> str:
     """Bytes in words.
 
     Examples
     --------
-    >>> size(32 << 20), size(1500)
+    >>> format_bytes(32 << 20), format_bytes(1500)
     ('32 MB', '1 kB')
     """
     return f"{count >> 20} MB" if count >= MEBIBYTE else f"{max(1, count >> 10)} kB"

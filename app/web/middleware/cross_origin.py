@@ -42,12 +42,12 @@ class CrossOrigin:
                 "Access-Control-Max-Age": "86400",
             }
             await Response(status_code=204, headers=allowed)(scope, receive, send)
-        elif method not in _READING and self._foreign(headers):
-            await respond(Request(scope), 403, self._reason(headers))(scope, receive, send)
+        elif method not in _READING and self._is_foreign(headers):
+            await respond(Request(scope), 403, self._explain(headers))(scope, receive, send)
         else:
             await self.app(scope, receive, send)
 
-    def _foreign(self, headers: Headers) -> bool:
+    def _is_foreign(self, headers: Headers) -> bool:
         origin = headers.get("origin")
         if origin is not None and origin == self.public_origin:
             return False
@@ -56,7 +56,7 @@ class CrossOrigin:
             return site not in {"same-origin", "none"}
         return origin is not None and urlsplit(origin).netloc != headers.get("host")
 
-    def _reason(self, headers: Headers) -> str:
+    def _explain(self, headers: Headers) -> str:
         """Say what was compared, so that who set up a proxy in front of this sees which header it spoils."""
         origin, host = (headers.get(name, "nothing")[:_QUOTED] for name in ("origin", "host"))
         known = f"it is {self.public_origin}" if self.public_origin else "it is not set"

@@ -25,19 +25,19 @@ def archive(
     """List what is public; ``trail`` holds the cursors of the pages passed, for keyset paging only goes onwards."""
     chosen = method if method in METHODS else None
     page = service.experiments.page(limit=PER_PAGE, cursor=cursor, method=chosen)
-    passed = [part for part in trail.split(" ") if part]
+    cursors = [part for part in trail.split(" ") if part]
 
     def address(to: str | None, through: list[str]) -> str:
         query = {"method": chosen, "cursor": to, "trail": " ".join(through[-TRAIL:])}
-        said = urlencode({name: value for name, value in query.items() if value})
-        return f"/archive?{said}" if said else "/archive"
+        query_string = urlencode({name: value for name, value in query.items() if value})
+        return f"/archive?{query_string}" if query_string else "/archive"
 
     context = {
         "experiments": page.experiments,
         "methods": METHODS.values(),
         "chosen": chosen,
         "paged": bool(cursor),
-        "older": address(page.cursor, [*passed, cursor] if cursor else []) if page.cursor else None,
-        "newer": address(passed[-1] if passed else None, passed[:-1]) if cursor else None,
+        "older": address(page.cursor, [*cursors, cursor] if cursor else []) if page.cursor else None,
+        "newer": address(cursors[-1] if cursors else None, cursors[:-1]) if cursor else None,
     }
     return render(request, "archive.html", context)

@@ -9,7 +9,7 @@ from app.experiments.service import Service
 from app.gallery.catalogue import FAILURES, SUCCESSES, Pair
 from app.gallery.literature import FIGURES
 from app.web.deps import ServiceDep
-from app.web.pictures.exhibits import figure_view, shown
+from app.web.pictures.exhibits import exhibit_pictures, figure_view
 from app.web.templating import render
 
 router = APIRouter(include_in_schema=False)
@@ -28,4 +28,4 @@ def figures(request: Request, service: ServiceDep) -> Response:
 
 
 def _views(service: Service, pairs: tuple[Pair, ...]) -> list[dict[str, Any]]:
-    return [{"pair": pair, "pictures": shown(service, pair.exhibit)} for pair in pairs]
+    return [{"pair": pair, "pictures": exhibit_pictures(service, pair.exhibit)} for pair in pairs]

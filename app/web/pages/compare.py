@@ -55,8 +55,8 @@ def compare(
     if not same_inputs:
         panes += crop_panes(second, other=True)
     panes += [texture_pane(run, note=f"seed {run.parameters['seed']}", page=experiment_address(run)) for run in both]
-    told = [dict(parameter_rows(experiment)) for experiment in both]
-    rows = [(name, [values.get(name, "–") for values in told]) for name in told[0] | told[1]]
+    parameters = [dict(parameter_rows(experiment)) for experiment in both]
+    rows = [(name, [values.get(name, "–") for values in parameters]) for name in parameters[0] | parameters[1]]
     context |= {"panes": panes, "experiments": both, "rows": rows, "tiling": tiling_note(both)}
     return render(request, "compare.html", context)
 

@@ -21,12 +21,21 @@ from app.methods.fields import fields
 from app.methods.model import Method
 from app.methods.params import MovingParams
 from app.methods.registry import METHODS, method
-from app.web.deps import ServiceDep, TokenDep, base_url, owner_of_press, pressed, remember_owner
+from app.web.deps import ServiceDep, TokenDep, base_url, choose_owner, read_press, remember_owner
 from app.web.form.address import form_url, input_values, sample_url
-from app.web.form.inputs import most
+from app.web.form.inputs import max_inputs
 from app.web.pages.snippets import snippets
-from app.web.pictures.panes import crop_panes, facts, gallery, input_titles, looping, steps, texture_pane, tiling
-from app.web.pictures.videos import address, moves
+from app.web.pictures.panes import (
+    crop_panes,
+    describe_looping,
+    describe_tiling,
+    facts,
+    gallery,
+    input_titles,
+    steps,
+    texture_pane,
+)
+from app.web.pictures.videos import is_video, output_url
 from app.web.templating import label, render
 
 SEEDS = 1_000_000  # new seeds are below this: few enough digits to read them aloud
@@ -103,7 +112,7 @@ class Source:
     frames: Frames
 
     @property
-    def address(self) -> str:
+    def url(self) -> str:
         """Its sample's page, opened at the crop and the time range."""
         return sample_url(self.sample.id, input_values(1, self.crop, self.frames))
 
@@ -140,11 +149,11 @@ def parameter_rows(experiment: Experiment) -> Iterator[tuple[str, str]]:
 
 
 def _downloads(experiment: Experiment) -> Iterator[tuple[str, str]]:
-    texture = f"{address(experiment, 'texture')}?download=true"
-    if moves(experiment):
+    texture = f"{output_url(experiment, 'texture')}?download=true"
+    if is_video(experiment):
         yield "WebM", texture
-        yield "MP4", f"{address(experiment, 'texture-mp4')}?download=true"
-        yield "Animated WebP", f"{address(experiment, 'preview')}?download=true"
+        yield "MP4", f"{output_url(experiment, 'texture-mp4')}?download=true"
+        yield "Animated WebP", f"{output_url(experiment, 'preview')}?download=true"
         yield "Everything, ZIP", f"/api/v1/experiments/{experiment.id}/outputs.zip"
         return
     depths = (16, 8) if experiment.depth == 16 else (8, 16)  # the sample's own first
@@ -184,7 +193,7 @@ def _timings(experiment: Experiment) -> Iterator[tuple[str, str, str]]:
 def _shares_phase(other: Method, experiment: Experiment) -> bool:
     """Whether another method would draw the same phase from these inputs."""
     declared = method(experiment.method)
-    fits = len(other.inputs) <= len(experiment.inputs) <= most(other)
+    fits = len(other.inputs) <= len(experiment.inputs) <= max_inputs(other)
     return other.name != declared.name and other.phase and declared.phase and fits
 
 
@@ -195,7 +204,7 @@ def tiling_note(experiments: Sequence[Experiment]) -> str:
     params = [each.params.model_construct(**run.parameters) for each, run in zip(declared, experiments, strict=True)]
     seamless = [each.toroidal(chosen) for each, chosen in zip(declared, params, strict=True)]
     loops = [getattr(chosen, "loop", True) for chosen in params if isinstance(chosen, MovingParams)]
-    return f"{tiling(seamless)} {looping(loops)}".rstrip()
+    return f"{describe_tiling(seamless)} {describe_looping(loops)}".rstrip()
 
 
 @router.post("/experiments/{experiment_id}/again")
@@ -209,14 +218,14 @@ def again(
     press: Annotated[str, Form()] = "",
 ) -> Response:
     """Run the same crop once more: with a new seed, or by another method at the same phase."""
-    key = pressed(press)
+    key = read_press(press)
     experiment = service.experiments.get(experiment_id)
     known = method(name).params.model_fields
     parameters = {key: value for key, value in experiment.parameters.items() if key in known}
     if seed == "new":
         parameters["seed"] = (int(key, 16) if key else secrets.randbits(64)) % SEEDS  # a press has one seed
     inputs = tuple(NewInput(source.sample, source.crop, source.frames) for source in experiment.inputs)
-    owner = owner_of_press(token, key)
+    owner = choose_owner(token, key)
     listed = experiment.listed or is_exhibit(experiment)
     run = service.submission.submit(NewExperiment(name, inputs, parameters, listed), owner, key)
     other = name != experiment.method

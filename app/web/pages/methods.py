@@ -17,7 +17,7 @@ from app.methods.registry import METHODS, method
 from app.web.deps import ServiceDep, base_url
 from app.web.form.address import form_url
 from app.web.pages.snippets import snippets
-from app.web.pictures.exhibits import Shown, figure_view, shown
+from app.web.pictures.exhibits import ExhibitPicture, exhibit_pictures, figure_view
 from app.web.templating import render
 
 BIBTEX = "application/x-bibtex; charset=utf-8"
@@ -30,13 +30,13 @@ class Card:
     """A method of the overview: a sample, and what the method makes of it."""
 
     method: Method
-    pictures: list[Shown]
+    pictures: list[ExhibitPicture]
 
 
 @router.get("/methods")
 def overview(request: Request, service: ServiceDep) -> Response:
     def cards(group: Group) -> list[Card]:
-        return [Card(declared, shown(service, _pair(declared))) for declared in group.methods]
+        return [Card(declared, exhibit_pictures(service, _pair(declared))) for declared in group.methods]
 
     return render(request, "methods.html", {"groups": [(group, cards(group)) for group in groups()]})
 

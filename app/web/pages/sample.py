@@ -19,16 +19,16 @@ from app.web.deps import (
     ServiceDep,
     SettingsDep,
     TokenDep,
+    choose_owner,
     get_service,
     in_upload_thread,
-    owner_of_press,
-    pressed,
+    read_press,
     remember_owner,
 )
 from app.web.form.address import from_query, sample_url, with_switches
 from app.web.form.context import form_context
 from app.web.form.draft import Draft, read_form, with_error
-from app.web.form.inputs import Choices, further, prefix
+from app.web.form.inputs import Choices, further_numbers, prefix
 from app.web.pages.errors import WORDS
 from app.web.pages.structure import form_structure
 from app.web.problems import status_of
@@ -72,12 +72,12 @@ def experiments() -> Response:
 @router.post("/experiments")
 async def submit(request: Request, service: ServiceDep, settings: SettingsDep, token: TokenDep) -> Response:
     """Take the form of a sample's page: run it, or show the samples that were chosen in it."""
-    names = {f"{prefix(number)}file": f"{prefix(number)}sample" for number in further()}
+    names = {f"{prefix(number)}file": f"{prefix(number)}sample" for number in further_numbers()}
     if not request.headers.get("content-type", "").startswith("multipart/form-data"):
         return await run_in_threadpool(_submit, request, service, settings, token, await _texts(request), {})
     async with receive_form(request, tuple(names)) as form:
         values, errors = dict(form.fields), {}
-        owner = owner_of_press(token, pressed(values.get("press", "")))
+        owner = choose_owner(token, read_press(values.get("press", "")))
         for name, path in form.files.items():
             try:
                 values[names[name]] = (await in_upload_thread(request, service.samples.add, path, owner)).id
@@ -124,8 +124,8 @@ def _submit(
     submission = read_form(sample, choices, values)
     if submission.request is None:
         return _sample(request, settings, sample, choices, submission.draft, 422)
-    press = pressed(values.get("press", ""))
-    owner = owner_of_press(token, press)
+    press = read_press(values.get("press", ""))
+    owner = choose_owner(token, press)
     try:
         experiment = service.submission.submit(submission.request, owner, press)
     except AppError as error:

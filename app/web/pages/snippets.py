@@ -26,7 +26,7 @@ def snippets(experiment: Experiment, base_url: str) -> tuple[tuple[str, str], ..
     base_url : str
         The service's public address, without a slash at its end.
     """
-    files = _files(experiment)
+    files = _name_files(experiment)
     fetch = "".join(
         f"curl -fsS -o {name} {shlex.quote(f'{base_url}/api/v1/samples/{address}')}\n"
         for address, name in files.items()
@@ -52,7 +52,7 @@ def _addresses(experiment: Experiment) -> list[str]:
     return addresses
 
 
-def _files(experiment: Experiment) -> dict[str, str]:
+def _name_files(experiment: Experiment) -> dict[str, str]:
     """Name a file for each sample, by its address; a sample of which there are two crops is fetched once."""
     suffixes = {address: ".webm" if "/video" in address else ".png" for address in _addresses(experiment)}
     return {
@@ -65,21 +65,21 @@ def _texture(experiment: Experiment) -> str:
     return "texture.webm" if METHODS[experiment.method].moving else "texture.png"
 
 
-def _said(parameters: dict[str, Any]) -> dict[str, Any]:
+def _without_none(parameters: dict[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in parameters.items() if value is not None}
 
 
-def _of_texture(experiment: Experiment) -> dict[str, Any]:
+def _texture_parameters(experiment: Experiment) -> dict[str, Any]:
     """The parameters without those that change nothing of the texture, which is all that is asked for."""
     method, parameters = METHODS[experiment.method], dict(experiment.parameters)
     sizes = [Size(source.crop.width, source.crop.height, 3, source.frames.count) for source in experiment.inputs]
     # Not validated: an old experiment's parameters may be none that a later version takes.
     params = method.params.model_construct(**parameters)
     idle = without_effect(method, sizes, params, parameters.keys(), ["texture"])
-    return {name: value for name, value in _said(parameters).items() if name not in idle}
+    return {name: value for name, value in _without_none(parameters).items() if name not in idle}
 
 
-def _form(value: Any) -> str:
+def _form_text(value: Any) -> str:
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
@@ -97,14 +97,14 @@ def _curl(experiment: Experiment, base_url: str, files: dict[str, str]) -> str:
         entries |= {f"file{suffix}": f"@{files[sample]}", f"crop{suffix}": source.crop}
         if method.slot(index).moving:
             entries[f"time{suffix}"] = source.frames
-    entries |= _of_texture(experiment)
-    words = [_field(name, _form(value)) for name, value in entries.items()]
+    entries |= _texture_parameters(experiment)
+    words = [_field(name, _form_text(value)) for name, value in entries.items()]
     address = shlex.quote(f"{base_url}/api/v1/synthesize")
-    return _wrapped([f"curl -fsS -o {_texture(experiment)}", address, *words])
+    return _wrap([f"curl -fsS -o {_texture(experiment)}", address, *words])
 
 
 def _command(experiment: Experiment, files: dict[str, str]) -> str:
-    parameters = _of_texture(experiment)
+    parameters = _texture_parameters(experiment)
     size = f"{parameters.pop('width')}x{parameters.pop('height')}"
     names = " ".join(files[address] for address in _addresses(experiment))
     words = [f"microtexture synthesize {names} {_texture(experiment)}", f"--method {experiment.method}"]
@@ -120,10 +120,10 @@ def _command(experiment: Experiment, files: dict[str, str]) -> str:
             words.append(f"--{option}" if value else f"--no-{option}")
         else:
             words.append(f"--{option} {shlex.quote(str(value))}")
-    return _wrapped(words)
+    return _wrap(words)
 
 
-def _wrapped(words: list[str]) -> str:
+def _wrap(words: list[str]) -> str:
     lines = [words[0]]
     for word in words[1:]:
         if len(lines[-1]) + len(word) < WIDTH:
@@ -140,7 +140,7 @@ def _python(experiment: Experiment, base_url: str) -> str:
         inputs.append({"sample": source.sample, "crop": vars(source.crop)})
         if moving or source.frames.first:
             inputs[-1]["frames"] = vars(source.frames)
-    parameters = _said(dict(experiment.parameters))
+    parameters = _without_none(dict(experiment.parameters))
     request = {"method": experiment.method, "inputs": inputs, "parameters": parameters, "listed": False}
     return f"""import time
 

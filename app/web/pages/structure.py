@@ -30,7 +30,7 @@ router = APIRouter(include_in_schema=False)
 
 
 @dataclass(frozen=True)
-class Measured:
+class Photograph:
     """A bundled photograph, its suggested crop and what the meter says of it."""
 
     sample: Sample
@@ -48,10 +48,10 @@ class Measured:
 
 
 @dataclass(frozen=True)
-class Placed:
+class Placement:
     """Where a photograph's picture lies on the scale, whose foot is at 0."""
 
-    photograph: Measured
+    photograph: Photograph
     left: float
     top: float
 
@@ -68,7 +68,7 @@ def form_structure(service: Service, sample: Sample, values: Mapping[str, str]) 
 @router.get("/structure")
 def structure_page(request: Request, service: ServiceDep, settings: SettingsDep) -> Response:
     photographs = sorted(_photographs(service, settings), key=lambda each: each.delta)
-    places = placed(photographs)
+    places = place_pictures(photographs)
     named = {each.sample.id: each for each in photographs}
     context = {
         "photographs": photographs,
@@ -87,20 +87,20 @@ def structure_page(request: Request, service: ServiceDep, settings: SettingsDep)
     return render(request, "structure.html", context)
 
 
-def _photographs(service: Service, settings: Settings) -> list[Measured]:
+def _photographs(service: Service, settings: Settings) -> list[Photograph]:
     """Those that have come in so far; a scene is no texture, a clip no photograph: neither has a place on the scale."""
     entries = {
         entry.id: entry for entry in read_catalogue(settings.samples_dir) if entry.kind not in ("scene", "moving")
     }
     return [
-        Measured(sample, entry.title, entry.crop, delta)
+        Photograph(sample, entry.title, entry.crop, delta)
         for sample in service.samples.bundled()
         if (entry := entries.get(sample.id)) is not None
         and (delta := service.meter.structure(sample, entry.crop).delta) is not None
     ]
 
 
-def placed(photographs: Sequence[Measured]) -> list[Placed]:
+def place_pictures(photographs: Sequence[Photograph]) -> list[Placement]:
     """Put pictures side by side at their index, each in the lowest row that has room for it there."""
     ends: list[float] = []  # of the rows, from the lowest
     places = []
@@ -108,5 +108,5 @@ def placed(photographs: Sequence[Measured]) -> list[Placed]:
         left = 10 * meter_place(photograph.delta) - SIDE / 2
         row = next((row for row, end in enumerate(ends) if left >= end + GAP), len(ends))
         ends[row : row + 1] = [left + SIDE]
-        places.append(Placed(photograph, left, -(row + 1) * (SIDE + GAP)))
+        places.append(Placement(photograph, left, -(row + 1) * (SIDE + GAP)))
     return places

@@ -11,8 +11,8 @@ from app.images.crop import Rectangle
 from app.methods.explanations.model import Exhibit, Figure
 from app.methods.registry import method
 from app.web.form.address import form_url
-from app.web.pictures.panes import parts
-from app.web.pictures.videos import Clip, address, clip_of
+from app.web.pictures.panes import input_parts
+from app.web.pictures.videos import Video, find_video, output_url
 from app.web.templating import label
 
 SAMPLE = "Sample"
@@ -23,7 +23,7 @@ WIDE = 1760  # pixels; pictures of several sizes that are together no wider stan
 
 
 @dataclass(frozen=True)
-class Shown:
+class ExhibitPicture:
     """One picture or film; ``url`` is empty for one that is being made, and ``change`` for all but an exhibit's last.
 
     ``leads`` says that it is an exhibit's first and an input.
@@ -39,28 +39,28 @@ class Shown:
     delta: float | None = None
     state: str = ""
     leads: bool = False
-    clip: Clip | None = None
+    video: Video | None = None
 
 
-def shown(service: Service, exhibit: Exhibit) -> list[Shown]:
+def exhibit_pictures(service: Service, exhibit: Exhibit) -> list[ExhibitPicture]:
     """The pictures of one exhibit, in its order."""
     made = service.exhibition.find(exhibit)
     if made is None or made.status is not Status.SUCCEEDED:
-        return _standing_in(service, exhibit, made)
+        return _make_placeholders(service, exhibit, made)
     change = form_url(made)
     deltas = _deltas(made)
     found = [output for name in exhibit.show if (output := made.output(name)) is not None]
     return [
-        Shown(
+        ExhibitPicture(
             caption=_caption(exhibit, output.name, output.title, first=output is found[0]),
-            url=address(made, output.name),
+            url=output_url(made, output.name),
             page=f"/experiments/{made.id}",
             width=output.width,
             height=output.height,
             change=change if output is found[-1] else "",
             delta=deltas.get(output.name),
             leads=output is found[0] and _is_crop(output.name),
-            clip=clip_of(made, output),
+            video=find_video(made, output),
         )
         for output in found
     ]
@@ -68,15 +68,15 @@ def shown(service: Service, exhibit: Exhibit) -> list[Shown]:
 
 def figure_view(service: Service, figure: Figure) -> dict[str, Any]:
     """What the macro `figure` of ``_partials/figure.html`` takes: pictures by exhibit, and how to lay them out."""
-    groups = [shown(service, exhibit) for exhibit in figure.exhibits]
+    groups = [exhibit_pictures(service, exhibit) for exhibit in figure.exhibits]
     pictures = [picture for group in groups for picture in group]
     alike = len({picture.width for picture in pictures}) == 1
-    laid = [pictures] if alike else groups
+    rows = [pictures] if alike else groups
     if alike:
         columns = _columns([group[0].leads for group in groups], len(pictures))
     return {
         "figure": figure,
-        "groups": [(group, sum(picture.width for picture in group) <= WIDE) for group in laid],
+        "groups": [(group, sum(picture.width for picture in group) <= WIDE) for group in rows],
         "layout": f"of-{columns}" if alike else "mixed",
         "scale": 2 if max(picture.width for picture in pictures) <= SMALL else 1,
     }
@@ -107,7 +107,7 @@ def _is_crop(name: str) -> bool:
 def _input_title(exhibit: Exhibit, name: str) -> str:
     """Name an input by its part in the method, or as a sample."""
     number = int(name.removeprefix(CROP).removeprefix("-") or 1)
-    if titles := parts(method(exhibit.method)):
+    if titles := input_parts(method(exhibit.method)):
         return titles[number - 1]
     return SAMPLE if number == 1 else f"{SAMPLE} {number}"
 
@@ -119,15 +119,15 @@ def _deltas(experiment: Experiment) -> dict[str, float]:
     return {name: values[0] for name, values in pairs if values}
 
 
-def _standing_in(service: Service, exhibit: Exhibit, made: Experiment | None) -> list[Shown]:
+def _make_placeholders(service: Service, exhibit: Exhibit, made: Experiment | None) -> list[ExhibitPicture]:
     """The samples' crops, where they are on show, and one place for all that is not there yet."""
     try:
         experiment = service.exhibition.prepare(exhibit)
     except AppError:
-        return [Shown(label(exhibit.method), "", "", 256, 256, state="Its sample is not here yet")]
+        return [ExhibitPicture(label(exhibit.method), "", "", 256, 256, state="Its sample is not here yet")]
     page = f"/experiments/{made.id}" if made is not None else ""
     size = experiment.parameters["width"], experiment.parameters["height"]
-    texture = Shown(
+    texture = ExhibitPicture(
         exhibit.label or label(exhibit.method),
         "",
         page,
@@ -138,14 +138,14 @@ def _standing_in(service: Service, exhibit: Exhibit, made: Experiment | None) ->
     return [*_crops(service, exhibit, experiment), texture]
 
 
-def _crops(service: Service, exhibit: Exhibit, experiment: Experiment) -> Iterator[Shown]:
+def _crops(service: Service, exhibit: Exhibit, experiment: Experiment) -> Iterator[ExhibitPicture]:
     for number, source in enumerate(experiment.inputs, 1):
         name = CROP if number == 1 else f"{CROP}-{number}"
         if name in exhibit.show:
             sample = service.samples.get(source.sample)
             crop = (sample.id, sample.width, sample.height, source.crop)
             title, size = _input_title(exhibit, name), (source.crop.width, source.crop.height)
-            yield Shown(title, "", f"/samples/{sample.id}", *size, crop=crop, leads=number == 1)
+            yield ExhibitPicture(title, "", f"/samples/{sample.id}", *size, crop=crop, leads=number == 1)
 
 
 def _state(made: Experiment | None, making: bool) -> str:

@@ -9,7 +9,7 @@ from app.experiments.model import Experiment, Output
 from app.methods.model import Method
 from app.methods.registry import method
 from app.web.form.inputs import ORDINALS
-from app.web.pictures.videos import Clip, address, clip_of, moves, shown
+from app.web.pictures.videos import Video, display_url, find_video, is_video, output_url
 from app.web.templating import label
 
 CUBES = ("crop-cube", "cube")
@@ -20,7 +20,7 @@ class Pane:
     """One picture or film.
 
     ``page`` is where its title leads, ``measured`` whether its structure index was asked for, ``delta`` what that is,
-    None being too small to tell, ``clip`` how a film plays, ``deep`` where it is at 16 bits.
+    None being too small to tell, ``video`` how a film plays, ``deep_url`` where it is at 16 bits.
     """
 
     title: str
@@ -31,8 +31,8 @@ class Pane:
     page: str = ""
     measured: bool = False
     delta: float | None = None
-    clip: Clip | None = None
-    deep: str = ""
+    video: Video | None = None
+    deep_url: str = ""
 
 
 def crop_panes(experiment: Experiment, *, other: bool = False) -> list[Pane]:
@@ -57,21 +57,22 @@ def gallery(experiment: Experiment) -> list[Pane]:
     deltas = _texture_deltas(experiment)
     return [
         replace(
-            _pane(experiment, output, output.title, deltas=deltas.get(output.name, [])), deep=deep(experiment, output)
+            _pane(experiment, output, output.title, deltas=deltas.get(output.name, [])),
+            deep_url=deep_url(experiment, output),
         )
         for output in experiment.outputs
         if output.listed and output.kind == "texture" and output.name != "texture"
     ]
 
 
-def deep(experiment: Experiment, output: Output) -> str:
+def deep_url(experiment: Experiment, output: Output) -> str:
     """Where a still texture is downloaded at 16 bits."""
-    return f"{address(experiment, output.name)}?download=true&format=png&depth=16"
+    return f"{output_url(experiment, output.name)}?download=true&format=png&depth=16"
 
 
 def steps(experiment: Experiment) -> list[Pane]:
     """What led to the texture, with it and without the rest of the gallery; of films the stills, their cubes first."""
-    moving = moves(experiment)
+    moving = is_video(experiment)
     found = [
         output
         for output in experiment.outputs
@@ -81,7 +82,7 @@ def steps(experiment: Experiment) -> list[Pane]:
     return [_pane(experiment, output, output.title) for output in found]
 
 
-def tiling(seamless: Sequence[bool]) -> str:
+def describe_tiling(seamless: Sequence[bool]) -> str:
     """Say of one texture, or of several, whether they tile."""
     several = len(seamless) > 1
     if all(seamless):
@@ -96,7 +97,7 @@ def tiling(seamless: Sequence[bool]) -> str:
     return f"Not toroidal: like the sample’s, the edges of {which} do not meet, and a seam shows where they touch."
 
 
-def looping(loops: Sequence[bool]) -> str:
+def describe_looping(loops: Sequence[bool]) -> str:
     """Say of one film, or of several, whether they play for ever; nothing of none."""
     if not loops:
         return ""
@@ -109,7 +110,7 @@ def looping(loops: Sequence[bool]) -> str:
     return f"{'They do' if several else 'It does'} not loop: from the last frame to the first there is a jump."
 
 
-def parts(declared: Method) -> tuple[str, ...]:
+def input_parts(declared: Method) -> tuple[str, ...]:
     """The titles of a method's inputs if every one has a part of its own; empty if they are alike."""
     return () if len(declared.inputs) == 1 or declared.more else tuple(slot.title for slot in declared.inputs)
 
@@ -121,7 +122,7 @@ def input_titles(experiment: Experiment, *, other: bool = False) -> list[str]:
     """
     count = len(experiment.inputs)
     word = "other " if other else ""
-    if named := parts(method(experiment.method)):
+    if named := input_parts(method(experiment.method)):
         titles = [f"{word}{title[0].lower()}{title[1:]}" for title in named]
     else:
         titles = [f"{word}sample"] if count == 1 else [f"{ordinal} {word}sample" for ordinal in ORDINALS[:count]]
@@ -172,9 +173,9 @@ def _pane(
     deltas: Sequence[float | None] = (),
 ) -> Pane:
     """Show an output; ``deltas`` is its structure index, or empty where it was not measured."""
-    clip = clip_of(experiment, output)
-    url = address(experiment, output.name) if output.video else shown(experiment, output.name)
-    return Pane(title, url, output.width, output.height, note, page, bool(deltas), next(iter(deltas), None), clip)
+    video = find_video(experiment, output)
+    url = output_url(experiment, output.name) if output.video else display_url(experiment, output.name)
+    return Pane(title, url, output.width, output.height, note, page, bool(deltas), next(iter(deltas), None), video)
 
 
 def _deltas(experiment: Experiment, part: str) -> list[float | None]:

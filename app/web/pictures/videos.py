@@ -8,7 +8,7 @@ from app.experiments.model import Experiment, Output
 
 
 @dataclass(frozen=True)
-class Clip:
+class Video:
     """A film; ``sources`` are (address, media type), the best first."""
 
     sources: tuple[tuple[str, str], ...]
@@ -17,31 +17,31 @@ class Clip:
     rate: float
 
 
-def address(experiment: Experiment, name: str) -> str:
+def output_url(experiment: Experiment, name: str) -> str:
     """Where an output is."""
     return f"/api/v1/experiments/{experiment.id}/outputs/{name}"
 
 
-def shown(experiment: Experiment, name: str) -> str:
+def display_url(experiment: Experiment, name: str) -> str:
     """Where an output is as pages show it: a screen shows no more than 8 bits, and they are half as many bytes."""
-    return f"{address(experiment, name)}{'?depth=8' if experiment.depth == 16 else ''}"
+    return f"{output_url(experiment, name)}{'?depth=8' if experiment.depth == 16 else ''}"
 
 
-def clip_of(experiment: Experiment, output: Output) -> Clip | None:
+def find_video(experiment: Experiment, output: Output) -> Video | None:
     """The film that an output is, None for a picture."""
     if not output.video:
         return None
     other = experiment.output(f"{output.name}{MP4_SUFFIX}")
     files = [output] if other is None else [output, other]
-    return Clip(
-        sources=tuple((address(experiment, file.name), file.media_type) for file in files),
-        poster=address(experiment, POSTERS[output.name]),
+    return Video(
+        sources=tuple((output_url(experiment, file.name), file.media_type) for file in files),
+        poster=output_url(experiment, POSTERS[output.name]),
         frames=output.frames,
         rate=output.rate,
     )
 
 
-def moves(experiment: Experiment) -> bool:
+def is_video(experiment: Experiment) -> bool:
     """Whether its texture is a video."""
     texture = experiment.output("texture")
     return texture is not None and texture.video

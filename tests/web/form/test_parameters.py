@@ -10,7 +10,7 @@ from app.methods.fields import fields, requirement
 from app.methods.model import Method
 from app.methods.params import LoopParams, StillParams
 from app.methods.registry import METHODS
-from app.web.form.parameters import SHARED, form_name, own_fields, parse, shared
+from app.web.form.parameters import SHARED, form_name, own_fields, parse, shared_names
 
 
 class Params(StillParams):
@@ -54,7 +54,7 @@ def test_shared_parameters_are_asked_once(method: Method) -> None:
 def test_what_moving_methods_share_is_asked_once_for_them(method: Method) -> None:
     """Each of it where a method has it; a still method's own parameter of the same name stays its own."""
     looping = replace(method, params=type("Looping", (Params, LoopParams), {}))
-    assert shared(looping) == ("width", "height", "seed", "frames", "loop")
+    assert shared_names(looping) == ("width", "height", "seed", "frames", "loop")
     assert [field.name for field in own_fields(looping)] == ["scale", "levels", "kind", "exact", "shares"]
     assert form_name(looping, "loop") == "loop"
     assert form_name(looping, "tileable") == "test.tileable"

@@ -12,8 +12,8 @@ import pytest
 from PIL import Image
 
 from app.methods.explanations.model import Exhibit
-from app.web.pictures.exhibits import Shown, shown
-from app.web.pictures.videos import clip_of
+from app.web.pictures.exhibits import ExhibitPicture, exhibit_pictures
+from app.web.pictures.videos import find_video
 from app.web.templating import TEMPLATES
 
 TIME = {"first": 1, "count": 5}
@@ -183,8 +183,8 @@ def test_a_figure_plays_a_film_when_asked_and_a_card_shows_its_first_frame(site:
     made = site.service.experiments.get(films["id"])
     output = made.output("texture")
     assert output is not None
-    entry = Shown(
-        "Video RPN", f"{outputs(films)}/texture", f"/experiments/{made.id}", 32, 28, clip=clip_of(made, output)
+    entry = ExhibitPicture(
+        "Video RPN", f"{outputs(films)}/texture", f"/experiments/{made.id}", 32, 28, video=find_video(made, output)
     )
     module: Any = TEMPLATES.env.get_template("_partials/figure.html").module
     played = module.picture(entry)
@@ -199,7 +199,7 @@ def test_an_exhibit_that_is_not_made_shows_its_inputs_by_their_parts(site: Any) 
     """As many as it is to show, and one place for all that the method makes."""
     source = ("gravel_gray", "0,0,16,16")
     exhibit = Exhibit("modulus-phase", (source, source), show=("crop", "crop-2", "texture"))
-    assert [(entry.caption, entry.leads) for entry in shown(site.service, exhibit)] == [
+    assert [(entry.caption, entry.leads) for entry in exhibit_pictures(site.service, exhibit)] == [
         ("Modulus", True),
         ("Phase", False),
         ("Modulus and phase", False),

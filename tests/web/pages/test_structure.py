@@ -8,7 +8,7 @@ import pytest
 
 from app.experiments.meter import Index, interpret
 from app.images.crop import Rectangle
-from app.web.pages.structure import SIDE, Measured, placed
+from app.web.pages.structure import SIDE, Photograph, place_pictures
 from app.web.templating import TEMPLATES, meter_place
 
 URL = "/api/v1/samples/gravel_gray/structure"
@@ -129,7 +129,7 @@ def test_the_crop_s_meter_shows_what_the_page_knows_and_hides_until_it_knows(sit
 def test_pictures_on_the_scale_do_not_overlap_and_stand_at_their_index(site):
     sample = site.service.samples.get("gravel_gray")
     deltas = np.sort(np.random.default_rng(0).uniform(-0.01, 0.45, 60))
-    places = placed([Measured(sample, "", Rectangle(0, 0, 9, 9), delta) for delta in deltas])
+    places = place_pictures([Photograph(sample, "", Rectangle(0, 0, 9, 9), delta) for delta in deltas])
     for place in places:
         assert place.left + SIDE / 2 == pytest.approx(10 * meter_place(place.photograph.delta))
     for a, b in itertools.combinations(places, 2):

@@ -8,8 +8,17 @@ import pytest
 
 from app.experiments.model import Experiment, ExperimentInput, Output
 from app.images.crop import Rectangle
-from app.web.pictures.panes import crop_panes, facts, gallery, input_titles, looping, steps, texture_pane, tiling
-from app.web.pictures.videos import Clip
+from app.web.pictures.panes import (
+    crop_panes,
+    describe_looping,
+    describe_tiling,
+    facts,
+    gallery,
+    input_titles,
+    steps,
+    texture_pane,
+)
+from app.web.pictures.videos import Video
 
 
 def output(name: str, kind: Any = "view") -> Output:
@@ -97,18 +106,18 @@ def test_facts_name_their_picture_only_where_they_would_be_mistaken() -> None:
     ],
 )
 def test_whether_textures_tile_is_said_of_one_and_of_two(seamless: list[bool], words: str) -> None:
-    assert words in tiling(seamless)
+    assert words in describe_tiling(seamless)
 
 
 def test_films_are_offered_as_webm_first_and_as_mp4_besides() -> None:
     """With the poster that is shown until they are there, and what a clock of frames must know."""
-    crop, texture = (pane.clip for pane in (crop_panes(MOVING)[0], texture_pane(MOVING)))
+    crop, texture = (pane.video for pane in (crop_panes(MOVING)[0], texture_pane(MOVING)))
     address = "/api/v1/experiments/old/outputs"
     files = ((f"{address}/crop", "video/webm"), (f"{address}/crop-mp4", "video/mp4"))
-    assert crop == Clip(files, f"{address}/.poster-crop", 9, 24.0)
+    assert crop == Video(files, f"{address}/.poster-crop", 9, 24.0)
     assert texture is not None
     assert (texture.poster, texture.frames) == (f"{address}/.poster-texture", 12)
-    assert texture_pane(OLD).clip is None
+    assert texture_pane(OLD).video is None
 
 
 def test_the_steps_of_a_film_are_stills_and_begin_with_both_cubes() -> None:
@@ -127,11 +136,11 @@ def test_the_steps_of_a_film_are_stills_and_begin_with_both_cubes() -> None:
     ],
 )
 def test_whether_films_loop_is_said_of_one_and_of_two(loops: list[bool], words: str) -> None:
-    assert words in looping(loops)
+    assert words in describe_looping(loops)
 
 
 def test_nothing_is_said_of_loops_where_nothing_moves() -> None:
-    assert looping([]) == ""
+    assert describe_looping([]) == ""
 
 
 @pytest.mark.parametrize(
