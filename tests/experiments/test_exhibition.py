@@ -12,27 +12,17 @@ from typing import Any
 
 import pytest
 
-from app.errors import DeletedError, ForbiddenError, NotFoundError
+from app.errors import DeletedError, ForbiddenError, InvalidInputError, NotFoundError
 from app.experiments import exhibition
 from app.experiments.model import Status
-from app.experiments.preparation import NewExperiment, NewInput, prepare
 from app.experiments.service import Service
 from app.gallery.exhibits import exhibits
-from app.gallery.groups import groups
 from app.gallery.identity import identifier
-from app.images.crop import Rectangle
-from app.methods.allowed import Allowed
 from app.methods.explanations.model import Exhibit
-from app.methods.registry import METHODS
 from app.settings import ROOT, Settings
-from tests.bundled_samples import sample_of
 
 SAMPLES = ROOT / "samples"
 DRAWN = ("two_sinusoids", "lit_plaster")
-MOST_PIXELS, MOST_FILM_PIXELS = (
-    640 * 512,
-    640 * 512 * 72,
-)  # of a crop and of a texture: all exhibits together are made in a minute or two
 WAVES = Exhibit("rpn", (("two_sinusoids", "0,0,64,64"),), {"seed": 1})
 PLASTER = Exhibit("adsn", (("lit_plaster", "0,0,64,48"),), {"seed": 2})
 
@@ -66,37 +56,6 @@ def two(monkeypatch: pytest.MonkeyPatch) -> None:
 def filled(service: Service, two: None) -> Service:
     assert service.exhibition.fill(threading.Event()) == exhibition.Filled(made=2, without_sample=1)
     return service
-
-
-@pytest.mark.parametrize("exhibit", exhibits().values(), ids=exhibits().keys())
-def test_every_exhibit_is_a_small_experiment_that_can_run(exhibit: Exhibit) -> None:
-    inputs = tuple(NewInput(sample, Rectangle.parse(crop)) for sample, crop in exhibit.inputs)
-    experiment = prepare(
-        NewExperiment(exhibit.method, inputs, exhibit.parameters),
-        exhibition.OWNER,
-        sample=sample_of,
-        transparent=lambda sample, crop, frames: False,
-        allowed=Allowed(MOST_PIXELS, MOST_FILM_PIXELS, 1 << 31),
-    )
-    assert max(source.crop.width * source.crop.height for source in experiment.inputs) <= MOST_PIXELS
-
-
-def test_the_identifier_is_a_function_of_what_is_computed() -> None:
-    same = Exhibit("rpn", WAVES.inputs, {"seed": 1, "alpha": 0.1}, ("texture",), "other words")
-    assert identifier(same) == identifier(WAVES)
-    others = [
-        Exhibit("adsn", WAVES.inputs, WAVES.parameters),
-        Exhibit("rpn", (("two_sinusoids", "0,0,64,63"),), WAVES.parameters),
-        Exhibit("rpn", WAVES.inputs, {"seed": 2}),
-    ]
-    assert len({identifier(exhibit) for exhibit in (WAVES, *others)}) == 4
-
-
-def test_every_method_is_told_of_once_also_one_that_stands_in_no_group(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(METHODS, "new", METHODS["rpn"])
-    found = groups()
-    assert sorted(name for group in found for name in group.names) == sorted(METHODS)
-    assert found[-1].names == ("new",)
 
 
 def test_made_twice_it_gives_the_same_bytes(filled: Service) -> None:
@@ -181,6 +140,132 @@ def test_nothing_is_begun_while_somebody_waits(filled: Service) -> None:
     filled.exhibition.fill(Closing(), again=True)
     assert engine.jobs == [identifier(WAVES), identifier(PLASTER)]
     assert len(asked) == 5
+
+
+class Ended:
+    """An engine whose jobs end as they are begun, in a state that the test records."""
+
+    def __init__(self, record: Callable[[str], object]) -> None:
+        self.record, self.waiting = record, 0
+
+    def submit(self, job: str) -> None:
+        self.record(job)
+
+    def snapshot(self, job: str) -> None:
+        return None
+
+
+Done = list[tuple[int, int, Exhibit, str | None]]
+
+
+def fill(service: Service, **values: Any) -> tuple[exhibition.Filled, Done]:
+    done: Done = []
+    filled = service.exhibition.fill(threading.Event(), on_done=lambda *args: done.append(args), **values)
+    return filled, done
+
+
+def test_what_fails_is_counted_and_reported_with_its_reason(filled: Service) -> None:
+    """One that failed, and one that was cancelled, which has no reason of its own."""
+    store: Any = filled._store
+
+    def end(job: str) -> None:
+        assert store.cancel(job) if job == identifier(PLASTER) else store.fail(job, "too large")
+
+    filled.exhibition._executor = Ended(end)  # type: ignore[assignment] # as much of one as is asked
+    counts, done = fill(filled, again=True)
+    assert counts == exhibition.Filled(failed=2, without_sample=1)
+    assert done == [(1, 2, WAVES, "too large"), (2, 2, PLASTER, "It was cancelled.")]
+
+
+def test_what_is_deleted_while_it_is_made_is_reported(filled: Service) -> None:
+    filled.exhibition._executor = Ended(filled._store.delete)  # type: ignore[assignment] # as much of one as is asked
+    counts, done = fill(filled, again=True)
+    assert counts == exhibition.Filled(failed=2, without_sample=1)
+    assert {error for _, _, _, error in done} == {"It could not be begun; the log says why."}
+
+
+def test_one_that_cannot_be_prepared_is_logged_and_keeps_no_other_from_being_made(
+    service: Service, two: None, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    prepare_it = service.exhibition.prepare
+
+    def refusing(exhibit: Exhibit) -> Any:
+        if exhibit is WAVES:
+            raise InvalidInputError("The crop is too small.")
+        return prepare_it(exhibit)
+
+    monkeypatch.setattr(service.exhibition, "prepare", refusing)
+    counts, done = fill(service)
+    assert counts == exhibition.Filled(made=1, failed=1, without_sample=1)
+    assert done == [(1, 2, WAVES, "It could not be begun; the log says why."), (2, 2, PLASTER, None)]
+    assert [record.message for record in caplog.records] == ["an exhibit of rpn cannot be made: The crop is too small."]
+
+
+def test_as_many_are_begun_at_once_as_are_asked_for(filled: Service) -> None:
+    begun: list[int] = []
+
+    class Engine:
+        waiting = 0
+        jobs: set[str] = set()  # noqa: RUF012 - one engine
+
+        def submit(self, job: str) -> None:
+            self.jobs.add(job)
+            begun.append(len(self.jobs))
+
+        def snapshot(self, job: str) -> object:
+            if len(begun) == 2:
+                self.jobs.discard(job)
+            return job if job in self.jobs else None
+
+    filled.exhibition._executor = Engine()  # type: ignore[assignment] # as much of one as is asked
+    assert fill(filled, again=True, at_once=2)[0].made + fill(filled)[0].kept == 4
+    assert begun == [1, 2]
+
+
+def test_a_fault_of_the_background_is_logged_and_the_pages_no_longer_promise_figures(
+    make_service: Callable[..., Service],
+    settings: Settings,
+    monkeypatch: pytest.MonkeyPatch,
+    caplog: pytest.LogCaptureFixture,
+) -> None:
+    service = make_service(settings.model_copy(update={"catalogue": True}))
+    assert service.exhibition.making
+
+    def failing(closing: threading.Event) -> None:
+        raise OSError("database is locked")
+
+    monkeypatch.setattr(service.exhibition, "fill", failing)
+    service.exhibition.keep(threading.Event())
+    assert [record.message for record in caplog.records] == [
+        "the catalogue could not be made; the next start tries again"
+    ]
+    assert "database is locked" in caplog.text
+    assert not service.exhibition.making
+
+
+def test_samples_that_cannot_be_taken_in_keep_no_command_waiting(
+    make_service: Callable[..., Service], settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`fill` waits for them; a fault there ends the waiting, and is the thread's own."""
+    exhibits_of = make_service(settings).exhibition
+
+    def failing(closing: threading.Event) -> None:
+        raise OSError("the disk is gone")
+
+    monkeypatch.setattr(exhibits_of._samples, "add_bundled", failing)
+    with pytest.raises(OSError, match="gone"):
+        exhibits_of.keep(threading.Event())
+    monkeypatch.setattr(exhibition, "exhibits", dict)
+    assert exhibits_of.fill(threading.Event()) == exhibition.Filled()
+
+
+def test_filling_ends_with_the_service_while_the_samples_are_not_in(
+    make_service: Callable[..., Service], settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(exhibition, "POLL_SECONDS", 0.001)
+    closing = threading.Event()
+    closing.set()
+    assert make_service(settings).exhibition.fill(closing) == exhibition.Filled()
 
 
 def test_an_exhibit_that_nobody_made_is_not_found_but_can_be_prepared(filled: Service) -> None:
