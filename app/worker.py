@@ -4,7 +4,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from app.experiments import run
-from app.methods.model import Progress
+from app.methods.context import Progress
 from app.settings import Settings
 from app.store.blobs import FileBlobs
 from app.store.sql import SqlStore

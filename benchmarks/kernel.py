@@ -15,7 +15,8 @@ import scipy.fft
 from numpy.typing import NDArray
 
 from app.images.png_writer import PngWriter
-from app.methods.model import Context, Source
+from app.methods.context import Context
+from app.methods.model import Source
 from app.methods.registry import method
 from app.synthesis.fourier.periodic import periodic_component, periodic_spectrum
 from app.synthesis.gaussian.adsn import adsn_field

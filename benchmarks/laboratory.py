@@ -16,7 +16,8 @@ import numpy as np
 import scipy.fft
 from numpy.typing import NDArray
 
-from app.methods.model import Context, Source
+from app.methods.context import Context
+from app.methods.model import Source
 from app.methods.registry import method
 from benchmarks.kernel import MEGABYTE, THREADS, above_idle, sample
 from benchmarks.timing import alternate

@@ -20,7 +20,8 @@ from numpy.typing import NDArray
 
 from app.images.decode import Limits, decode
 from app.images.video.reader import read_video
-from app.methods.model import Context, Film, Picture, Source
+from app.methods.context import Context
+from app.methods.model import Film, Picture, Source
 from app.methods.output.films import texture_film
 from app.methods.registry import method
 from app.settings import ROOT

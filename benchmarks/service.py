@@ -17,7 +17,8 @@ import psutil
 
 from app.images.crop import Rectangle
 from app.images.read import read_crop
-from app.methods.model import Context, Source
+from app.methods.context import Context
+from app.methods.model import Source
 from app.methods.registry import method
 from app.settings import Settings
 from benchmarks.served import Served, served

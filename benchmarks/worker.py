@@ -17,7 +17,8 @@ from typing import NamedTuple
 import psutil
 
 from app.executor.dask import DaskExecutor
-from app.methods.model import Context, Progress, Source
+from app.methods.context import Context, Progress
+from app.methods.model import Source
 from app.methods.registry import method
 from app.settings import Settings
 from benchmarks.kernel import MEGABYTE, sample

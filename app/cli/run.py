@@ -28,14 +28,16 @@ from app.errors import InvalidInputError, NotFoundError
 from app.experiments.diagnostics import diagnose
 from app.experiments.model import Experiment, ExperimentInput, Sample
 from app.experiments.preparation import Answer, NewExperiment, NewInput, prepare
-from app.experiments.run import METHOD_SHARE, pick
+from app.experiments.run import pick
 from app.images.crop import Frames, Rectangle
 from app.images.decode import Decoded, Limits, decode
 from app.methods.allowed import Allowed
+from app.methods.context import Context, Progress
 from app.methods.effects import outputs_of
-from app.methods.model import Context, Film, Method, Picture, Progress, Source
+from app.methods.model import Film, Method, Picture, Source
 from app.methods.params import StillParams
 from app.methods.registry import method as method_named
+from app.methods.stages import Stages
 from app.numbers import said
 from app.settings import Settings
 
@@ -108,13 +110,10 @@ def _all(
     ready = _ready(request, Answer(None, depth), settings)
     names = [file_name(output) for output in outputs_of(method, ready.params, len(ready.sources))]
     check_directory(directory, [*names, RECORD], overwrite=request.overwrite)
-
-    def overall(stage: str, fraction: float) -> None:
-        progress(stage, METHOD_SHARE * fraction)
-
-    with directory_of(directory) as unfinished, ready.pictures(settings.threads, overall) as pictures:
+    stages = Stages((("method", 94), ("structure", 6)), progress)
+    with directory_of(directory) as unfinished, ready.pictures(settings.threads, stages.within("method")) as pictures:
         written = list(put_all(pictures, depth, unfinished))
-        write_record(ready.experiment, written, diagnose(ready.sources, written, progress), unfinished)
+        write_record(ready.experiment, written, diagnose(ready.sources, written, stages), unfinished)
     seconds = time.perf_counter() - started
     return f"{directory}: {len(written)} outputs and {RECORD}, {method.name}, seed {ready.params.seed}, {seconds:.2f} s"
 

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from app.images.crop import Rectangle, crop_to_centre
 from app.images.read import read_crop
 from app.images.video.reader import read_first_frame
-from app.methods.model import Picture, Progress, Source
+from app.methods.context import Progress
+from app.methods.model import Picture, Source
 from app.synthesis.structure import measure_delta
 
 DIGITS = 6  # of a number in the record
@@ -27,7 +28,7 @@ def diagnose(sources: Sequence[Source], staged: Sequence[tuple[Picture, Path]], 
     staged : sequence of (Picture, Path)
         Its pictures and the files they are in.
     progress : Progress
-        Called between measurements.
+        Called between measurements with the part of them that is done.
 
     Returns
     -------
@@ -41,10 +42,10 @@ def diagnose(sources: Sequence[Source], staged: Sequence[tuple[Picture, Path]], 
     inputs: list[float | None] = []
     outputs: list[float | None] = []
     for source in sources:
-        progress("structure", 0.92 + 0.06 * len(inputs) / total)
+        progress("structure", len(inputs) / total)
         inputs.append(_round(measure_delta(source.pixels)))
     for picture, path in textures:
-        progress("structure", 0.92 + 0.06 * (len(inputs) + len(outputs)) / total)
+        progress("structure", (len(inputs) + len(outputs)) / total)
         outputs.append(_round(measure_delta(_pixels(picture, path))))
     facts = [{"output": picture.name, **asdict(fact)} for picture, _ in staged for fact in picture.facts]
     return {"structure": {"inputs": inputs, "outputs": outputs}, "facts": facts}

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from app.experiments.model import Experiment, Output, Page, Sample, Snapshot
-from app.methods.model import Progress
+from app.methods.context import Progress
 from app.settings import Settings
 
 

@@ -17,13 +17,15 @@ from app.experiments.model import DEEP, Experiment, Output, Status, deep_name
 from app.experiments.ports import BlobStore, ExperimentStore
 from app.images.read import read_crop
 from app.images.stored_video import locate_crop, read_frames
-from app.methods.model import Context, Film, Picture, Progress, Source
+from app.methods.context import Context, Progress
+from app.methods.model import Film, Picture, Source
 from app.methods.registry import method as method_named
+from app.methods.stages import Plan, Stages
 
 log = logging.getLogger(__name__)
 
 MAX_ATTEMPTS = 6  # more often than any row of restarts would start one: it is the experiment that ends the service
-METHOD_SHARE = 0.92  # of the bar; the rest is for what is done around the method
+STAGES: Plan = (("reading the crop", 1), ("method", 91), ("structure", 6), ("writing", 2))
 
 
 def run_job(store: ExperimentStore, blobs: BlobStore, job: str, progress: Progress, *, threads: int) -> None:
@@ -96,17 +98,19 @@ def _in_words(job: str, error: Exception) -> str:
 def _compute(
     store: ExperimentStore, blobs: BlobStore, experiment: Experiment, progress: Progress, threads: int
 ) -> None:
-    stages = Stages(progress)
+    timer = StageTimer(progress)
+    stages = Stages(STAGES, timer)
     sources = _read(store, blobs, experiment, stages)
-    pictures = _pictures(experiment, sources, experiment.depth, threads, stages, blobs.temporary_directory)
+    method = stages.within("method")
+    pictures = _pictures(experiment, sources, experiment.depth, threads, method, blobs.temporary_directory)
     if experiment.transient:
         pictures = pick(pictures, experiment.wanted)
     with _staged(blobs, pictures) as staged:
         diagnostics = {} if experiment.transient else diagnose(sources, staged, stages)
-        stages("writing", 1.0)
+        stages.finish()
         with blobs.lease():
             outputs = [_kept(blobs, picture, path) for picture, path in staged]
-            store.succeed(experiment.id, outputs, stages.seconds(), diagnostics, environment())
+            store.succeed(experiment.id, outputs, timer.seconds(), diagnostics, environment())
 
 
 def _add_deep(
@@ -118,9 +122,9 @@ def _add_deep(
         return
     if experiment.status is not Status.SUCCEEDED or experiment.output(deep_name(output)) is not None:
         return
-    stages = Stages(progress)
+    stages = Stages(STAGES, progress)
     sources = _read(store, blobs, experiment, stages)
-    pictures = _pictures(experiment, sources, 16, threads, stages, blobs.temporary_directory)
+    pictures = _pictures(experiment, sources, 16, threads, stages.within("method"), blobs.temporary_directory)
     with _staged(blobs, _deep(pictures, output)) as staged, blobs.lease():
         for picture, path in staged:
             store.add_output(experiment_id, replace(_kept(blobs, picture, path), name=deep_name(picture.name)))
@@ -163,11 +167,7 @@ def _pictures(
 ) -> Iterator[Picture]:
     method = method_named(experiment.method)
     params = method.params.model_validate(experiment.parameters)
-
-    def scaled(stage: str, fraction: float) -> None:
-        progress(stage, METHOD_SHARE * fraction)
-
-    return method.pictures(sources, params, Context(depth, threads, scaled, scratch))
+    return method.pictures(sources, params, Context(depth, threads, progress, scratch))
 
 
 @contextmanager
@@ -190,7 +190,7 @@ def _kept(blobs: BlobStore, picture: Picture, path: Path) -> Output:
     return Output(**picture.properties(), bytes=size, digest=digest)
 
 
-class Stages:
+class StageTimer:
     """Passes progress on and keeps the seconds of every stage."""
 
     def __init__(self, progress: Progress) -> None:

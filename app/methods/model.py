@@ -3,11 +3,10 @@
 A method is declared once; its form, its API schema, its command line options and its page come from that.
 """
 
-import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import KW_ONLY, dataclass, field, fields
+from dataclasses import KW_ONLY, dataclass, fields, replace
 from pathlib import Path
-from typing import Any, Literal, Protocol
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,18 +14,10 @@ from numpy.typing import NDArray
 from app.errors import InvalidInputError
 from app.methods.allowed import Allowed
 from app.methods.announced import Announced
+from app.methods.context import Context
 from app.methods.explanations.model import Explanation, Reference
 from app.methods.params import MovingParams, Resolved, StillParams
-
-
-class Progress(Protocol):
-    """What a method calls between pieces of work; it raises when the experiment is cancelled or out of time.
-
-    ``stage`` is a short lower-case name (``"periodic component"``), ``fraction`` the part of the run that is done, 0–1.
-    The time from one stage's first call to the next stage's is that stage's time in the record.
-    """
-
-    def __call__(self, stage: str, fraction: float) -> None: ...
+from app.methods.stages import Plan, Stages
 
 
 @dataclass(frozen=True)
@@ -86,28 +77,6 @@ class Source:
     def size(self) -> Size:
         height, width, channels = self.pixels.shape
         return Size(width, height, channels, 1 if self.film is None else len(self.film.frames))
-
-
-@dataclass(frozen=True)
-class Context:
-    """What a run may use.
-
-    ``depth`` is the bits per channel of still pictures, 8 or 16; ``scratch`` the directory for files that are too
-    large to be kept in memory until they are given back.
-    """
-
-    depth: Literal[8, 16]
-    threads: int
-    progress: Progress
-    scratch: Path = field(default_factory=lambda: Path(tempfile.gettempdir()))
-
-    def between(self, begin: float, end: float) -> Progress:
-        """A progress callback whose fractions 0–1 are the part of the run from ``begin`` to ``end``."""
-
-        def scaled(stage: str, fraction: float) -> None:
-            self.progress(stage, begin + fraction * (end - begin))
-
-        return scaled
 
 
 @dataclass(frozen=True)
@@ -185,8 +154,11 @@ class Method:
         Yields its pictures as they are made, the main one, ``texture``, first; what is not asked for is not computed.
         Among them is ``crop``, and ``crop-2``, … for further inputs (see `app.methods.output.pictures.crops`).
         Its inputs are finite and its `Resolved` parameters have passed ``check``: see `pictures`, which calls it.
+        It calls ``context.progress`` with its stages and the part of each that is done.
     outputs : tuple of Announced
         Every picture that it may yield, in that order.
+    stages : callable ``(sizes, resolved) -> Plan``
+        The stages that a run with these parameters goes through, in their order, with weights: see `Stages`.
     check : callable ``(sizes, resolved) -> None``
         Raises `app.errors.InvalidInputError` for a combination that cannot run, before anything is queued; default:
         nothing is refused.
@@ -216,6 +188,7 @@ class Method:
     explanation: Explanation
     run: Callable[[Sequence[Source], Resolved[Any], Context], Iterator[Picture]]
     outputs: tuple[Announced, ...]
+    stages: Callable[[Sequence[Size], Resolved[Any]], Plan]
     check: Callable[[Sequence[Size], Resolved[Any]], None] = lambda sizes, resolved: None
     more: int = 0
     size: Callable[[Sequence[Size]], tuple[int, int]] = first_size
@@ -284,19 +257,27 @@ class Method:
         params : StillParams
             The method's own, as typed or resolved.
         context : Context
+            Its progress is called with the part of the run that is done; it never falls, and ends at 1.
 
         Raises
         ------
         InvalidInputError
             At once, if `resolve` refuses or an input holds values that are not finite.
         """
-        resolved = self.resolve([source.size for source in sources], params)
+        sizes = [source.size for source in sources]
+        resolved = self.resolve(sizes, params)
         for index, source in enumerate(sources):
             if not np.isfinite(source.pixels).all():
                 raise InvalidInputError(
                     "The crop holds values that are not finite numbers: save it anew.", f"inputs.{index}"
                 )
-        return self.run(sources, resolved, context)
+        return self._run(sources, resolved, context, Stages(self.stages(sizes, resolved), context.progress))
+
+    def _run(
+        self, sources: Sequence[Source], resolved: Resolved[Any], context: Context, stages: Stages
+    ) -> Iterator[Picture]:
+        yield from self.run(sources, resolved, replace(context, progress=stages))
+        stages.finish()
 
     def memory_of(self, sizes: Sequence[Size], params: StillParams) -> int:
         """Bytes that a run needs at its peak, as far as the method declares it; else 0."""

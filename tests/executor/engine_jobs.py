@@ -12,7 +12,8 @@ from pathlib import Path
 import numpy as np
 
 from app.errors import InvalidInputError
-from app.methods.model import Context, Progress, Source
+from app.methods.context import Context, Progress
+from app.methods.model import Source
 from app.methods.registry import method
 from app.settings import Settings
 

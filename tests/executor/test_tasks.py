@@ -11,7 +11,7 @@ from app.errors import CancelledError, InvalidInputError, TimeLimitError
 from app.executor import tasks
 from app.executor.messages import BROKEN
 from app.executor.tasks import REPORT_SECONDS, Reporter, stop, work
-from app.methods.model import Progress
+from app.methods.context import Progress
 from app.settings import Settings
 
 TOPIC, ADDRESS = "the topic", "tcp://worker"

@@ -18,7 +18,8 @@ from app.experiments.preparation import NewExperiment, NewInput
 from app.experiments.service import Service
 from app.images.crop import Rectangle
 from app.images.png_writer import encode_png
-from app.methods.model import Context, Picture
+from app.methods.context import Context
+from app.methods.model import Picture
 from app.methods.registry import METHODS
 from tests.experiments.running import OWNER, finished
 

@@ -16,7 +16,8 @@ from app.experiments.model import Experiment, ExperimentInput, Sample, Status, d
 from app.experiments.run import MAX_ATTEMPTS, run_job
 from app.images.crop import Rectangle
 from app.images.png_writer import encode_png
-from app.methods.model import Context, Picture
+from app.methods.context import Context
+from app.methods.model import Picture
 from app.methods.registry import METHODS
 from app.store.blobs import FileBlobs
 from app.store.sql import SqlStore
@@ -343,7 +344,7 @@ def test_the_seconds_of_a_stage_are_those_between_its_first_call_and_the_next_st
     clock = Clock()
     monkeypatch.setattr(run, "time", clock)
     passed: list[tuple[str, float]] = []
-    stages = run.Stages(lambda stage, fraction: passed.append((stage, fraction)))
+    stages = run.StageTimer(lambda stage, fraction: passed.append((stage, fraction)))
     clock.now += 100
     calls = [
         ("reading", 0.0, 1.0),
@@ -364,7 +365,7 @@ def test_the_seconds_of_a_stage_are_those_between_its_first_call_and_the_next_st
 def test_the_seconds_before_any_stage_are_nobodys(monkeypatch: pytest.MonkeyPatch) -> None:
     clock = Clock()
     monkeypatch.setattr(run, "time", clock)
-    stages = run.Stages(silent)
+    stages = run.StageTimer(silent)
     clock.now += 5
     assert stages.seconds() == {}
 
@@ -383,12 +384,12 @@ def test_the_recorded_timings_are_the_seconds_of_the_stages_in_their_order(
 
     last: list[tuple[str, float]] = []
 
-    class Ticking(run.Stages):
+    class Ticking(run.StageTimer):
         def __call__(self, stage: str, fraction: float) -> None:
             super().__call__(stage, fraction)
             clock.now += 1
 
-    monkeypatch.setattr(run, "Stages", Ticking)
+    monkeypatch.setattr(run, "StageTimer", Ticking)
     run_job(store, blobs, experiment.id, progress, threads=1)
     assert list(store.get(experiment.id).timings.items()) == [(stage, float(count)) for stage, count in calls.items()]
     assert last[0] == ("reading the crop", 0.0)

@@ -5,7 +5,8 @@ import pytest
 from imagecodecs import imread, png_decode
 
 from app.gallery.exhibits import exhibits
-from app.methods.model import Context, Source
+from app.methods.context import Context
+from app.methods.model import Source
 from app.methods.registry import METHODS
 from app.settings import ROOT
 

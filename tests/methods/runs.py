@@ -7,8 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from app.methods.model import Context, Film, Method, Picture, Progress, Source
+from app.methods.context import Context, Progress
+from app.methods.model import Film, Method, Picture, Source
 from app.methods.params import StillParams
+from app.methods.registry import METHODS
 
 # What methods that copy patches need to run on inputs as small as these.
 SMALL: Mapping[str, Mapping[str, Any]] = {
@@ -17,6 +19,22 @@ SMALL: Mapping[str, Mapping[str, Any]] = {
     "video-patchwork": {"grid": 8, "interval": 4},
     "video-transfer": {"grid": 8, "interval": 4, "candidates": 20},
 }
+
+# Beside the defaults: what makes more pictures, or fewer; and how many inputs.
+VARIANTS: Sequence[tuple[str, Mapping[str, Any], int]] = (
+    *((name, {}, len(method.inputs)) for name, method in METHODS.items()),
+    ("dsn", {"convergence": True}, 1),
+    ("dsn", {"spot": "disc", "radius": 3}, 1),
+    ("mix", {"strip": 0}, 2),
+    ("mix", {"strip": 3}, 2),
+    ("mix", {}, 3),
+    ("mix", {}, 4),
+    ("heeger-bergen", {"iterations": 1}, 1),
+    ("heeger-bergen", {"iterations": 3}, 1),
+    ("rpn", {"periodic": False}, 1),
+    ("patchwork", {"blend": "sharp"}, 1),
+    ("video-patchwork", {"arrangement": "mosaic"}, 1),
+)
 
 
 def a_crop(height: int = 48, width: int = 64, channels: int = 3, peak: int = 255, seed: int = 0) -> Source:
@@ -41,6 +59,12 @@ def sources_for(method: Method, **shape: Any) -> list[Source]:
     """Inputs for a method's slots: a clip where it takes a video, else a crop."""
     makers = [a_clip if slot.moving else a_crop for slot in method.inputs]
     return [maker(**shape, seed=number) for number, maker in enumerate(makers)]
+
+
+def inputs_of(method: Method, count: int, **shape: Any) -> list[Source]:
+    """So many inputs: further ones are the last one again."""
+    sources = sources_for(method, **shape)
+    return [*sources, *(sources[-1] for _ in range(count - len(sources)))]
 
 
 def run_small(

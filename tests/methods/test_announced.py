@@ -10,24 +10,9 @@ from app.methods.effects import COMMON, outputs_of, without_effect
 from app.methods.fields import fields
 from app.methods.model import Method, Source
 from app.methods.registry import METHODS
-from tests.methods.runs import run_small, small, sources_for
+from tests.methods.runs import VARIANTS, inputs_of, run_small, small
 
 DEPTH_AT = 24  # where a PNG file says its bits per channel
-# Beside the defaults: what makes more pictures, or fewer; and how many inputs.
-VARIANTS: Sequence[tuple[str, Mapping[str, Any], int]] = (
-    *((name, {}, len(method.inputs)) for name, method in METHODS.items()),
-    ("dsn", {"convergence": True}, 1),
-    ("dsn", {"spot": "disc", "radius": 3}, 1),
-    ("mix", {"strip": 0}, 2),
-    ("mix", {"strip": 3}, 2),
-    ("mix", {}, 3),
-    ("mix", {}, 4),
-    ("heeger-bergen", {"iterations": 1}, 1),
-    ("heeger-bergen", {"iterations": 3}, 1),
-    ("rpn", {"periodic": False}, 1),
-    ("patchwork", {"blend": "sharp"}, 1),
-    ("video-patchwork", {"arrangement": "mosaic"}, 1),
-)
 # Values that differ from the defaults, for parameters of which none can be made up from their bounds.
 OTHERS: Mapping[str, Sequence[Any]] = {
     "alpha": (0.3, 0.0),
@@ -46,11 +31,6 @@ OTHERS: Mapping[str, Sequence[Any]] = {
     "interval": (3,),
     "candidates": (3,),
 }
-
-
-def inputs_of(method: Method, count: int) -> list[Source]:
-    sources = sources_for(method)
-    return [*sources, *(sources[-1] for _ in range(count - len(sources)))]
 
 
 def made(method: Method, sources: Sequence[Source], scratch: Path, **parameters: Any) -> dict[str, tuple[Any, bytes]]:

@@ -9,7 +9,8 @@ import pytest
 
 from app.errors import InvalidInputError, TooLargeError
 from app.methods.allowed import Allowed
-from app.methods.model import Context, Method, Picture, Size, Source
+from app.methods.context import Context
+from app.methods.model import Method, Picture, Size, Source
 from app.methods.params import Resolved
 from app.methods.registry import METHODS
 from tests.methods.runs import a_crop, run_small, small, sources_for

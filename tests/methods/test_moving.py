@@ -1,6 +1,5 @@
 """What every method that makes videos promises, whatever it computes."""
 
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -67,16 +66,6 @@ def test_the_seed_alone_decides_and_not_the_threads(method: Method, tmp_path: Pa
     first, again, other = made(1, 5), made(2, 5), made(2, 6)
     assert first == again
     assert first[0] != other[0]
-
-
-@EVERY
-def test_the_progress_never_goes_back_and_ends_at_one(method: Method, tmp_path: Path) -> None:
-    seen: list[float] = []
-    assert list(
-        run_small(method, sources_for(method), scratch=tmp_path, progress=lambda stage, part: seen.append(part))
-    )
-    assert all(before <= after for before, after in pairwise(seen))
-    assert 0 <= seen[0] < seen[-1] == pytest.approx(1)
 
 
 @EVERY

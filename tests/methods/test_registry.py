@@ -1,7 +1,6 @@
 """What every method of the registry promises, whatever it computes."""
 
 import io
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -9,7 +8,6 @@ from imagecodecs import png_decode
 from latex2mathml.converter import convert
 from PIL import Image
 
-from app.errors import CancelledError
 from app.experiments.preparation import NewExperiment, NewInput, prepare
 from app.images.crop import Rectangle
 from app.methods.allowed import Allowed
@@ -131,32 +129,6 @@ def test_the_seed_alone_decides_and_not_the_threads(method: Method) -> None:
     )
     assert first == again
     assert (first[0] != other[0]) == (method.name not in WITHOUT_CHANCE)
-
-
-@EVERY_STILL
-def test_the_progress_never_goes_back_and_ends_at_one(method: Method) -> None:
-    seen: list[float] = []
-    stages: list[str] = []
-
-    def progress(stage: str, fraction: float) -> None:
-        stages.append(stage)
-        seen.append(fraction)
-
-    assert list(run_small(method, sources_for(method), progress=progress))
-    assert all(before <= after for before, after in pairwise(seen))
-    assert 0 <= seen[0] < seen[-1] == pytest.approx(1)
-    assert all(stage == stage.lower() for stage in stages)
-
-
-@EVERY_STILL
-@pytest.mark.parametrize("part", [0.0, 0.3, 0.7])
-def test_what_the_progress_raises_ends_the_run(method: Method, part: float) -> None:
-    def progress(stage: str, fraction: float) -> None:
-        if fraction >= part:
-            raise CancelledError("enough")
-
-    with pytest.raises(CancelledError):
-        list(run_small(method, sources_for(method), progress=progress))
 
 
 @EVERY_STILL

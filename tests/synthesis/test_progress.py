@@ -101,24 +101,24 @@ WORK = {
         lambda p: convolve([sample_spot(H, 60, 64)], [np.ones((60, 33), np.complex64)], progress=p),
         ("texture",), 4, 0.34,
     ),
-    "dsn": Reports(lambda p: dsn(sample_spot(H, 60, 64), 10, progress=p), ("points", "texture"), 6, 0.24),
+    "dsn": Reports(lambda p: dsn(sample_spot(H, 60, 64), 10, progress=p), ("points", "texture"), 6, 0.51),
     "mix": Reports(lambda p: mix([TALL, TALL[::-1]], None, 400, 640, progress=p), NOISE, 24, 0.201),
     "Mixture": Reports(in_team(mixture), NOISE, 24, 0.201),
     "rayleigh": Reports(lambda p: rayleigh(H, progress=p), ("rayleigh noise",), 10, 0.14),
     "swap": Reports(lambda p: swap(H, H[::-1], progress=p), ("swap",), 10, 0.14),
     "texton": Reports(lambda p: texton(H, progress=p), ("texton",), 3, 0.25),
     "texton_noise": Reports(
-        lambda p: texton_noise(H, extended(), progress=p), ("random phase", "texture"), 7, 0.2  # type: ignore[arg-type]
+        lambda p: texton_noise(H, extended(), progress=p), ("random phase", "texture"), 7, 0.41  # type: ignore[arg-type]
     ),
     "cut_texton": Reports(lambda p: cut_texton(H, MEAN, 60, 64, 5, progress=p), ("texton",), 40, 0.11),
     "video_rpn": Reports(
-        lambda p: video_rpn(VIDEO, 8, 30, 32, progress=p), ("periodic", "spot", "random phase"), 40, 0.05
+        lambda p: video_rpn(VIDEO, 8, 30, 32, progress=p), ("periodic", "spot", "random phase"), 40, 0.17
     ),
     "VideoNoiseField": Reports(
         in_team(
             lambda t, p: VideoNoiseField(VIDEO, (6, 24, 20), seed=0, alpha=0.1, profile="bump", team=t, progress=p)
         ),
-        ("periodic", "random phase"), 15, 0.07,
+        ("periodic", "random phase"), 15, 0.17,
     ),
     "heeger_bergen": Reports(
         lambda p: heeger_bergen(H, iterations=2, progress=p),

@@ -20,7 +20,7 @@ from PIL import Image
 from app.experiments.service import Service
 from app.gallery.exhibits import exhibits
 from app.main import create_app
-from app.methods.model import Progress
+from app.methods.context import Progress
 from app.settings import ROOT, Settings
 from app.store.blobs import FileBlobs
 from app.store.sql import SqlStore

@@ -9,13 +9,15 @@ from pydantic import Field
 
 from app.errors import InvalidInputError
 from app.methods.announced import shown_inputs, texture, views
+from app.methods.context import Context
 from app.methods.explanations.dsn import EXPLANATION
 from app.methods.explanations.references import IPOL_RPN, PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES, SPOT_NOISE
 from app.methods.gaussian.params import SpotParams, not_extended
 from app.methods.inputs import INPUTS
-from app.methods.model import Context, Fact, Method, Picture, Progress, Size, Source
+from app.methods.model import Fact, Method, Picture, Size, Source
 from app.methods.output.pictures import crops, encode
 from app.methods.params import WHOLE_IN_MEMORY, Resolved
+from app.methods.stages import Plan
 from app.synthesis.arrays import Ints, Real
 from app.synthesis.fourier.spot import Spot
 from app.synthesis.fourier.spot_noise import sample_spot
@@ -74,7 +76,7 @@ def run(sources: Sequence[Source], resolved: Resolved[DsnParams], context: Conte
     """The texture, the gallery of its convergence if it is asked for, and what was thrown where."""
     source = sources[0]
     params, height, width = resolved.params, resolved.height, resolved.width
-    context.progress("spot", 0.0)
+    context.progress("spot", 0)
     spot = _spot(source, height, width, params, context)
     kurtosis = float(excess_kurtosis(spot).mean())
 
@@ -82,29 +84,31 @@ def run(sources: Sequence[Source], resolved: Resolved[DsnParams], context: Conte
         fact = Fact("excess-kurtosis", "Excess kurtosis of a pixel's law (0 for a Gaussian)", kurtosis / order)
         return encode(name, title, values, source.peak, context, kind="texture", facts=(fact,))
 
-    def made(order: int, progress: Progress) -> Real:
-        return dsn(spot, order, seed=params.seed, threads=context.threads, progress=progress)
+    def made(order: int) -> Real:
+        return dsn(spot, order, seed=params.seed, threads=context.threads, progress=context.progress)
 
-    end = 0.2 if params.convergence else 0.8
-    yield picture("texture", "Texture", made(params.order, context.between(0.05, end)), params.order)
+    yield picture("texture", "Texture", made(params.order), params.order)
     if params.convergence:
-        step = (0.8 - end) / (len(ORDERS) + 1)
         for order in ORDERS:
-            values = made(order, context.between(end, end + step))
-            yield picture(f"dsn-{order}", f"n = {order:,}".replace(",", "\N{NO-BREAK SPACE}"), values, order)
-            end += step
-        values = adsn_of_spot(spot, params.seed, context.threads, context.between(end, 0.8))
+            yield picture(f"dsn-{order}", f"n = {order:,}".replace(",", "\N{NO-BREAK SPACE}"), made(order), order)
+        values = adsn_of_spot(spot, params.seed, context.threads, context.progress)
         yield picture("adsn", "The limit: asymptotic discrete spot noise", values, np.inf)
-    context.progress("spot", 0.8)
+    context.progress("spot", 0)
     yield from crops(sources, context)
-    context.progress("spot", 0.85)
+    context.progress("spot", 0.5)
     if params.spot == "sample":
         yield encode("spot", "Spot", spot.rows(0, height).transpose(1, 2, 0), source.peak, context)
     else:
         yield encode("spot", "Spot", spot_shape(params.spot, height, width, params.radius), 1, context)
-    context.progress("points", 0.9)
+    context.progress("points", 0)
     yield _points(counts(height, width, params.order, params.seed), context)
-    context.progress("points", 1.0)
+
+
+def stages(sizes: Sequence[Size], resolved: Resolved[DsnParams]) -> Plan:
+    """The points of every order and the texture of them; the last texture, the limit, has no points."""
+    thrown = (("points", 2), ("texture", 5))
+    gallery = (*len(ORDERS) * thrown, ("texture", 5)) if resolved.params.convergence else ()
+    return (("spot", 1), *thrown, *gallery, ("spot", 1), ("points", 1))
 
 
 def idle(sizes: Sequence[Size], resolved: Resolved[DsnParams]) -> Mapping[str, str]:
@@ -158,6 +162,7 @@ DSN = Method(
     check=check,
     run=run,
     outputs=OUTPUTS,
+    stages=stages,
     idle=idle,
     most_pixels=WHOLE_IN_MEMORY,
 )

@@ -9,14 +9,16 @@ from pydantic import Field, field_validator
 from app.errors import InvalidInputError
 from app.images.png_writer import PngWriter, encode_png
 from app.methods.announced import Announced, Condition, from_inputs, shown_inputs, texture
+from app.methods.context import Context
 from app.methods.explanations.mix import EXPLANATION
 from app.methods.explanations.references import GAUSSIAN_MIXING, PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
 from app.methods.gaussian.params import SpotParams, not_extended
 from app.methods.gaussian.weights import canonical
 from app.methods.inputs import alike
-from app.methods.model import Context, Method, Picture, Size, Slot, Source
+from app.methods.model import Method, Picture, Size, Slot, Source
 from app.methods.output.pictures import crops
 from app.methods.params import WHOLE_IN_MEMORY, Resolved
+from app.methods.stages import Plan
 from app.synthesis.fourier.field import Noise
 from app.synthesis.gaussian.adsn import white_noise
 from app.synthesis.gaussian.mixing import Mixture
@@ -111,37 +113,39 @@ class _Run:
         samples = alike(sources)
         self._channels = samples[0].shape[2]
         self._shares = params.shares(len(sources))
-        self._begin, self._end = 0.1, 0.3
+        self._path = params.strip if len(sources) == 2 else 0
+        alone = len(sources) if len(sources) > 2 else 0
+        self._further = [f"mix-{step}" for step in range(1, self._path + 1)]
+        self._further += [f"sample-{number}" for number in range(1, alone + 1)]
+        names = [*self._further, "strip"] if self._path else ["texture", *self._further]
+        self._textures = context.during("strip" if self._path else "texture", [(name, 1) for name in names])
+        self._own_stage = set(names)
         noise = Noise(
             white_noise, self._height, self._width, seed=params.seed, alpha=params.alpha, window=params.window
         )
         self._mixture = Mixture(samples, self._shares, noise, team, self._progress)
 
     def _progress(self, stage: str, part: float) -> None:
-        begin, end = (0.0, 0.1) if stage == "spot" else (self._begin, self._end)
-        self._context.progress(stage, begin + part * (end - begin))
+        (self._textures if stage in self._own_stage else self._context.progress)(stage, part)
 
     def pictures(self) -> Iterator[Picture]:
-        path = self._params.strip if len(self._sources) == 2 else 0
-        further = path or len(self._sources) * (len(self._sources) > 2)
-        yield self._texture("texture", "Texture", self._shares, 0.4)
+        path = self._path
+        yield self._texture("texture", "Texture", self._shares)
         yield from crops(self._sources, self._context)
         strip = _Strip(path, self._height, self._width, self._channels, self._context) if path else None
-        for step in range(further):
-            end = 0.45 + 0.5 * (step + 1) / further
+        for step, name in enumerate(self._further):
             if strip:
                 rho = step / (path - 1)
-                yield self._texture(f"mix-{step + 1}", f"ρ = {rho:.2f}", [1 - rho, rho], end, strip, step)
+                yield self._texture(name, f"ρ = {rho:.2f}", [1 - rho, rho], strip, step)
             else:
-                alone = [float(index == step) for index in range(further)]
-                yield self._texture(f"sample-{step + 1}", f"Sample {step + 1} alone", alone, end)
+                alone = [float(index == step) for index in range(len(self._further))]
+                yield self._texture(name, f"Sample {step + 1} alone", alone)
         if strip:
-            self._context.progress("strip", 0.95)
+            self._textures("strip", 0)
             yield strip.picture()
-        self._context.progress("strip" if strip else "texture", 1.0)
 
     def _texture(
-        self, name: str, title: str, weights: list[float], end: float, strip: _Strip | None = None, step: int = 0
+        self, name: str, title: str, weights: list[float], strip: _Strip | None = None, step: int = 0
     ) -> Picture:
         writer = PngWriter(self._width, self._height, self._channels, self._context.depth)
 
@@ -150,9 +154,8 @@ class _Run:
             if strip:
                 strip.put(step, first, block)
 
-        self._begin, self._end = self._end, end
         levels = Levels(write, self._channels, 0, self._sources[0].peak, 2**self._context.depth - 1)
-        self._mixture.emit(weights, levels, "strip" if strip else "texture")
+        self._mixture.emit(weights, levels, name)
         return Picture(name, title, self._width, self._height, writer.finish(), kind="texture")
 
 
@@ -160,6 +163,12 @@ def run(sources: Sequence[Source], resolved: Resolved[MixParams], context: Conte
     """The barycentre; then the path between two samples, or each one's own texture if there are more."""
     with Team(context.threads) as team:
         yield from _Run(sources, resolved, context, team).pictures()
+
+
+def stages(sizes: Sequence[Size], resolved: Resolved[MixParams]) -> Plan:
+    """The mixture, and the path or the samples' own textures."""
+    further = (("texture", 10), ("strip", 60)) if len(sizes) == 2 and resolved.params.strip else (("texture", 70),)
+    return (("spot", 10), ("random phase", 20), *further)
 
 
 _PATH, _WEIGHED = ("alpha", "window", "strip"), ("alpha", "window", "weights")
@@ -199,6 +208,7 @@ MIX = Method(
     run=run,
     outputs=OUTPUTS,
     idle=idle,
+    stages=stages,
     most_pixels=WHOLE_IN_MEMORY,
     more=FURTHER,
     phase=True,

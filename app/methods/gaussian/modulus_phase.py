@@ -7,10 +7,11 @@ from pydantic import Field
 
 from app.errors import InvalidInputError
 from app.methods.announced import shown_inputs, texture, views
+from app.methods.context import Context
 from app.methods.explanations.modulus_phase import EXPLANATION
 from app.methods.explanations.references import OPPENHEIM_LIM, RANDOM_PHASE_TEXTURES
 from app.methods.inputs import alike
-from app.methods.model import Context, Method, Picture, Size, Slot, Source
+from app.methods.model import Method, Picture, Size, Slot, Source
 from app.methods.output.pictures import crops, encode, log_modulus
 from app.methods.params import MAX_SEED, WHOLE_IN_MEMORY, Resolved, StillParams
 from app.numbers import FAR
@@ -66,21 +67,19 @@ def run(sources: Sequence[Source], resolved: Resolved[ModulusPhaseParams], conte
     width, height = resolved.width, resolved.height
     peak = sources[0].peak
     images = [centre(pixels, height, width) for pixels in alike(sources)]
-    one, other = swap(images[0], images[1], context.threads, context.between(0, 0.5))
+    one, other = swap(images[0], images[1], context.threads, context.progress)
     yield encode("texture", "Modulus of the first, phase of the second", one, peak, context, kind="texture")
-    context.progress("swap", 0.55)
     yield encode("other", "Modulus of the second, phase of the first", other, peak, context, kind="texture")
-    context.progress("crops", 0.6)
+    context.progress("crops", 0)
     yield from crops(sources, context)
     for number, image in enumerate(images):
         which, suffix = ("first", "") if number == 0 else ("second", "-2")
-        context.progress("spectra", 0.65 + 0.15 * number)
+        context.progress("spectra", 2 * number / 4)
         squares = power(image.transpose(2, 0, 1), context.threads)
         yield log_modulus(f"modulus{suffix}", f"Log-modulus of the {which}", squares, width, context)
-        context.progress("spectra", 0.7 + 0.15 * number)
+        context.progress("spectra", (2 * number + 1) / 4)
         phase = centred_phase(image, context.threads) / np.float32(2 * np.pi) + np.float32(0.5)
         yield encode(f"phase{suffix}", f"Phase of the {which}, black −π to white π", phase, 1, context)
-    context.progress("spectra", 1.0)
 
 
 MODULUS_PHASE = Method(
@@ -105,6 +104,7 @@ MODULUS_PHASE = Method(
         *views("modulus-2", deep=False),
         *views("phase-2"),
     ),
+    stages=lambda sizes, resolved: (("swap", 60), ("crops", 5), ("spectra", 35)),
     most_pixels=WHOLE_IN_MEMORY,
     size=common_size,
     toroidal=lambda params: False,

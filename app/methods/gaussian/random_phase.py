@@ -10,11 +10,13 @@ from pydantic import Field
 from app.errors import InvalidInputError
 from app.images.png_writer import PngWriter
 from app.methods.announced import shown_inputs, texture, views
+from app.methods.context import Context, Progress
 from app.methods.gaussian.params import SpotParams
 from app.methods.inputs import refuse_other_size
-from app.methods.model import Context, Picture, Size, Source
+from app.methods.model import Picture, Size, Source
 from app.methods.output.pictures import log_modulus
 from app.methods.params import ADD_SMOOTH, ADVANCED, Resolved
+from app.methods.stages import Plan
 from app.synthesis.fourier.field import NoiseField
 from app.synthesis.fourier.periodic import smooth_planes
 from app.synthesis.fourier.spot import centre, make_spot
@@ -80,37 +82,37 @@ class _Run:
         self._peak = 2**context.depth - 1
 
     def pictures(self) -> Iterator[Picture]:
-        field = self._field({"spot": 0.1, "random phase": 0.4, "range": 0.55, "texture": 0.8}).randomise()
+        field = self._field(self._context.progress).randomise()
         mean = field.mean
         yield self._texture(field)
         del field
         h = self._source.pixels
-        yield self._picture("crop", "Crop", h.transpose(2, 0, 1), 0.82)
-        self._context.progress("periodic", 0.82)
+        yield self._picture("crop", "Crop", h.transpose(2, 0, 1))
+        self._context.progress("periodic", 0)
         h = centre(h, self._height, self._width)
         smooth = smooth_planes(h, self._context.threads)
         p = np.empty_like(smooth)
         np.subtract(h.transpose(2, 0, 1), smooth, out=p)
-        yield self._picture("periodic", "Periodic component", p, 0.84)
+        yield self._picture("periodic", "Periodic component", p)
         smooth += mean.astype(np.float32)[:, None, None]
-        yield self._picture("smooth", "Smooth component, the mean added", smooth, 0.86)
+        yield self._picture("smooth", "Smooth component, the mean added", smooth)
         del smooth
         if not self._params.periodic:
             p[:] = h.transpose(2, 0, 1)
-        self._context.progress("input-spectrum", 0.86)
+        self._context.progress("input-spectrum", 0)
         squares = power(p, self._context.threads)  # before the spot, which takes p's place
         if p.shape[1:] == (self._height, self._width):
-            yield self._picture("spot", "Spot", p, 0.88)
+            yield self._picture("spot", "Spot", p)
         else:
             spot = make_spot(p, mean, self._height, self._width, self._params.alpha, self._params.window)
-            yield self._write("spot", "Extended spot", self._height, self._width, spot.rows, 0.88)
+            yield self._write("spot", "Extended spot", self._height, self._width, spot.rows)
             del spot
         del p
         title = "Log-modulus of the periodic component" if self._params.periodic else "Log-modulus of the crop"
         yield log_modulus("input-spectrum", title, squares, h.shape[1], self._context)
-        squares = self._field({"spot": 0.92, "output-spectrum": 0.99}, 0.9, "output-spectrum").power()
+        again = self._context.during("output-spectrum", (("spot", 2), ("output-spectrum", 8)))
+        squares = self._field(again).power()
         yield log_modulus("output-spectrum", "Log-modulus of the texture", squares, self._width, self._context)
-        self._context.progress("output-spectrum", 1.0)
 
     def _texture(self, field: NoiseField) -> Picture:
         low, high = 0.0, float(self._source.peak)
@@ -122,16 +124,7 @@ class _Run:
         field.emit(Levels(writer.write, len(field.mean), low, high, self._peak))
         return Picture("texture", "Texture", self._width, self._height, writer.finish(), kind="texture")
 
-    def _field(self, ends: dict[str, float], start: float = 0.0, said: str | None = None) -> NoiseField:
-        """The noise's field; each of its stages goes from the end of the one before to its own in ``ends``.
-
-        ``said`` is what they are all called in the progress; by default each has its own name.
-        """
-        begins = dict(zip(ends, [start, *ends.values()], strict=False))
-
-        def progress(stage: str, part: float) -> None:
-            self._context.progress(said or stage, begins[stage] + part * (ends[stage] - begins[stage]))
-
+    def _field(self, progress: Progress) -> NoiseField:
         params = self._params
         return self._model(
             self._source.pixels,
@@ -147,9 +140,9 @@ class _Run:
             add_smooth=params.add_smooth,
         )
 
-    def _picture(self, name: str, title: str, values: NDArray[np.float32], end: float) -> Picture:
+    def _picture(self, name: str, title: str, values: NDArray[np.float32]) -> Picture:
         height, width = values.shape[1:]
-        return self._write(name, title, height, width, lambda first, last: values[:, first:last].copy(), end)
+        return self._write(name, title, height, width, lambda first, last: values[:, first:last].copy())
 
     def _write(
         self,
@@ -158,7 +151,6 @@ class _Run:
         height: int,
         width: int,
         rows: Callable[[int, int], NDArray[np.float32]],
-        end: float,
     ) -> Picture:
         """Write a picture of float rows (C, n, W) in the sample's range, cut off outside it."""
         writer = PngWriter(width, height, self._source.pixels.shape[2], self._context.depth)
@@ -167,7 +159,7 @@ class _Run:
         def write(block: tuple[int, int]) -> None:
             levels(block[0], rows(*block))
 
-        self._team.run(write, row_blocks(height), lambda part: self._context.progress(name, end - 0.02 * (1 - part)))
+        self._team.run(write, row_blocks(height), lambda part: self._context.progress(name, part))
         return Picture(name, title, width, height, writer.finish())
 
 
@@ -177,6 +169,21 @@ def run(
     """The texture, then the steps that lead to it."""
     with Team(context.threads) as team:
         yield from _Run(sources[0], resolved, context, team, model).pictures()
+
+
+def stages(sizes: Sequence[Size], resolved: Resolved[RandomPhaseParams]) -> Plan:
+    """Those of the noise, and one for each picture after it."""
+    stretching = (("range", 15),) if resolved.params.range == "stretch" else ()
+    noise = (("spot", 10), ("random phase", 30), *stretching, ("texture", 30))
+    return (
+        *noise,
+        ("crop", 2),
+        ("periodic", 2),
+        ("smooth", 2),
+        ("input-spectrum", 1),
+        ("spot", 2),
+        ("output-spectrum", 12),
+    )
 
 
 def toroidal(params: RandomPhaseParams) -> bool:

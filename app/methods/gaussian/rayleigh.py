@@ -6,12 +6,14 @@ import numpy as np
 
 from app.errors import InvalidInputError
 from app.methods.announced import shown_inputs, texture, views
+from app.methods.context import Context
 from app.methods.explanations.rayleigh import EXPLANATION
 from app.methods.explanations.references import PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
 from app.methods.inputs import INPUTS
-from app.methods.model import Context, Fact, Method, Picture, Progress, Size, Source
+from app.methods.model import Fact, Method, Picture, Size, Source
 from app.methods.output.pictures import crops, encode, log_modulus
 from app.methods.params import WHOLE_IN_MEMORY, Resolved, StillParams
+from app.methods.stages import Plan
 from app.synthesis.arrays import Real
 from app.synthesis.fourier.periodic import periodic_component
 from app.synthesis.fourier.spot import centre
@@ -38,36 +40,40 @@ def run(sources: Sequence[Source], resolved: Resolved[StillParams], context: Con
     source = sources[0]
     h, peak = source.pixels, source.peak
     seed, height, width = resolved.params.seed, resolved.height, resolved.width
-    progress = context.between(0, 0.25)
-    z = rayleigh(h, height, width, seed=seed, threads=context.threads, progress=progress)
-    context.progress("periodic", 0.25)
+    z = rayleigh(h, height, width, seed=seed, threads=context.threads, progress=context.progress)
+    context.progress("periodic", 0)
     p = periodic_component(centre(h, height, width), context.threads)
-    context.progress("correlation", 0.3)
+    context.progress("correlation", 0)
     fact = Fact("correlation", "Correlation with the periodic component", _correlation(p, z))
     yield encode("texture", "Rayleigh noise on the modulus", z, peak, context, kind="texture", facts=(fact,))
-    context.progress("pictures", 0.33)
+    context.progress("pictures", 0)
     yield from crops(sources, context)
     yield encode("periodic", "Periodic component", p, peak, context)
-    for name, model, title, begin in (
-        ("rpn", rpn, "RPN of the crop", 0.35),
-        ("adsn", adsn, "The same with Rayleigh noise: ADSN", 0.6),
+    for name, model, title in (
+        ("rpn", rpn, "RPN of the crop"),
+        ("adsn", adsn, "The same with Rayleigh noise: ADSN"),
     ):
-        progress = _as_one_stage(name, context.between(begin, begin + 0.25))
+        progress = context.during(name, (("spot", 1), ("random phase", 1), ("texture", 1)))
         texture = model(h, height, width, seed=seed, threads=context.threads, progress=progress)
         yield encode(name, title, texture, peak, context, kind="texture")
-    for name, title, image, done in (
-        ("input-spectrum", "Log-modulus of the periodic component", p, 0.9),
-        ("output-spectrum", "Log-modulus with Rayleigh noise", z, 0.95),
+    for name, title, image in (
+        ("input-spectrum", "Log-modulus of the periodic component", p),
+        ("output-spectrum", "Log-modulus with Rayleigh noise", z),
     ):
-        context.progress(name, done)
+        context.progress(name, 0)
         yield log_modulus(name, title, power(image.transpose(2, 0, 1), context.threads), width, context)
-    context.progress("output-spectrum", 1.0)
 
 
-def _as_one_stage(name: str, progress: Progress) -> Progress:
-    """The stages of `rpn` or `adsn` as one."""
-    stages = ("spot", "random phase", "texture")
-    return lambda stage, part: progress(name, (stages.index(stage) + part) / len(stages))
+STAGES: Plan = (
+    ("rayleigh noise", 25),
+    ("periodic", 5),
+    ("correlation", 3),
+    ("pictures", 2),
+    ("rpn", 25),
+    ("adsn", 25),
+    ("input-spectrum", 5),
+    ("output-spectrum", 5),
+)
 
 
 def _correlation(p: Real, z: Real) -> float:
@@ -98,5 +104,6 @@ RAYLEIGH = Method(
         texture("adsn"),
         *views("input-spectrum", "output-spectrum", deep=False),
     ),
+    stages=lambda sizes, resolved: STAGES,
     most_pixels=WHOLE_IN_MEMORY,
 )

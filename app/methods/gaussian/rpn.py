@@ -5,7 +5,7 @@ from functools import partial
 from app.methods.explanations.references import IPOL_RPN, PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
 from app.methods.explanations.rpn import EXPLANATION
 from app.methods.gaussian.params import not_extended
-from app.methods.gaussian.random_phase import OUTPUTS, RandomPhaseParams, check, run, toroidal
+from app.methods.gaussian.random_phase import OUTPUTS, RandomPhaseParams, check, run, stages, toroidal
 from app.methods.inputs import INPUTS
 from app.methods.model import Method
 from app.synthesis.gaussian.rpn import rpn_field
@@ -21,6 +21,7 @@ RPN = Method(
     check=check,
     run=partial(run, model=rpn_field),
     outputs=OUTPUTS,
+    stages=stages,
     toroidal=toroidal,
     phase=True,
     idle=not_extended,

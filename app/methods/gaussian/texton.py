@@ -7,13 +7,15 @@ import numpy as np
 from pydantic import Field
 
 from app.methods.announced import Announced, shown_inputs, texture, views
+from app.methods.context import Context
 from app.methods.explanations.references import PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
 from app.methods.explanations.references import TEXTON as TEXTON_ARTICLE
 from app.methods.explanations.texton import EXPLANATION
 from app.methods.inputs import INPUTS
-from app.methods.model import Context, Fact, Method, Picture, Source
+from app.methods.model import Fact, Method, Picture, Source
 from app.methods.output.pictures import crops, encode
 from app.methods.params import WHOLE_IN_MEMORY, Resolved, StillParams
+from app.methods.stages import Plan
 from app.numbers import FAR
 from app.synthesis.arrays import Real
 from app.synthesis.elementary import log10
@@ -45,38 +47,37 @@ def run(sources: Sequence[Source], resolved: Resolved[TextonParams], context: Co
     """The texture, the crop, and the texton that the one was made of and the other holds."""
     source = sources[0]
     params, height, width = resolved.params, resolved.height, resolved.width
-    context.progress("texton", 0.0)
+    context.progress("texton", 0)
     h = centre(source.pixels, height, width)
     parts, gains = _parts(h, height, width, params.cut, context)
-    context.progress("texton", 0.2)
-    values = texton_noise(h, parts, seed=params.seed, threads=context.threads, progress=context.between(0.2, 0.8))
+    values = texton_noise(h, parts, seed=params.seed, threads=context.threads, progress=context.progress)
     yield encode("texture", "Texture", values, source.peak, context, kind="texture")
     del values
-    context.progress("crop", 0.8)
+    context.progress("crop", 0)
     yield from crops(sources, context)
-    t = texton(h, context.threads, context.between(0.82, 0.86))
-    context.progress("texton", 0.86)
+    step = context.during("texton", (("texton", 4), ("picture", 4), ("logarithm", 2)))
+    t = texton(h, context.threads, step)
+    step("picture", 0)
     yield encode("texton", "Texton", _linear(t, _greatest(t)), 1, context, facts=_radii(t))
-    context.progress("texton", 0.9)
+    step("logarithm", 0)
     yield encode("texton-log", "Texton, logarithmic", _logarithmic(t), 1, context)
     del t
-    context.progress("extended texton", 0.92)
+    context.progress("extended texton", 0)
     errors = _errors(h, parts, context)
     gain = Fact("gain", "Factor r of the extended texton", gains[0])
     yield encode("spot", "Extended texton", _extended(parts[0]), 1, context, facts=(gain, *errors))
     if params.cut is not None:
-        context.progress("extended texton", 0.97)
+        context.progress("extended texton", 0.6)
         factors = tuple(Fact(f"gain-{n}", f"Factor r of noise {n}", value) for n, value in enumerate(gains, 1))
         squares = np.concatenate([_square(spot) for spot in parts], axis=1)
         yield encode("noises", "What is left, noise by noise", squares, 1, context, facts=factors)
-    context.progress("extended texton", 1.0)
 
 
 def _parts(
     h: Real, height: int, width: int, cut: int | None, context: Context
 ) -> tuple[Sequence[Spot], Sequence[float]]:
     """The extended texton, or the spots that are left of it, and the factor of each."""
-    mean, progress = h.mean(axis=(0, 1), dtype=np.float64), context.between(0, 0.2)
+    mean, progress = h.mean(axis=(0, 1), dtype=np.float64), context.progress
     if cut is not None and cut < max(h.shape[:2]):
         made = cut_texton(h, mean, height, width, cut, context.threads, progress)
         return made.spots, made.gains
@@ -138,6 +139,15 @@ def _logarithmic(t: Real) -> Real:
     return 1 + decades / np.float32(DECADES)
 
 
+STAGES: Plan = (
+    ("texton", 20),
+    ("random phase", 20),
+    ("texture", 40),
+    ("crop", 2),
+    ("texton", 10),
+    ("extended texton", 8),
+)
+
 TEXTON = Method(
     name="texton",
     title="Texton",
@@ -148,6 +158,7 @@ TEXTON = Method(
     explanation=EXPLANATION,
     run=run,
     outputs=(texture(), *shown_inputs(), *views("texton", "texton-log", of=()), *views("spot"), NOISES),
+    stages=lambda sizes, resolved: STAGES,
     most_pixels=WHOLE_IN_MEMORY,
     phase=True,
 )

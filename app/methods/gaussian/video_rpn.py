@@ -1,19 +1,20 @@
 """`video-rpn`: random phase noise in three dimensions."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from app.methods.announced import FILMS, SHOWN_CLIP, views
+from app.methods.context import Context, Progress
 from app.methods.explanations.references import GAUSSIAN_MIXING, IPOL_RPN, PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
 from app.methods.explanations.video_rpn import EXPLANATION
 from app.methods.gaussian.params import SpotParams, not_extended
-from app.methods.model import Context, Fact, Method, Picture, Progress, Size, Slot, Source
+from app.methods.model import Fact, Method, Picture, Size, Slot, Source
 from app.methods.output.films import crop_film, film_memory, texture_film
 from app.methods.output.pictures import encode, log_modulus
 from app.methods.params import MovingParams, Resolved
+from app.methods.stages import Plan
 from app.synthesis.arrays import Real
 from app.synthesis.gaussian.video_rpn import VideoNoiseField
 from app.synthesis.parallel import Team
@@ -57,21 +58,35 @@ def run(sources: Sequence[Source], resolved: Resolved[VideoRpnParams], context: 
             alpha=params.alpha,
             profile=params.window,
             team=team,
-            progress=context.between(0, 0.15),
+            progress=context.progress,
         )
         yield from texture_film(
-            _reported(field, context.between(0.15, 0.6)),
+            _reported(field, context.progress),
             width=shape[2],
             height=shape[1],
             channels=film.shape[3],
             count=shape[0],
             rate=rate,
-            context=replace(context, progress=context.between(0.6, 0.7)),
+            context=context,
         )
     yield from _views(film, field, context)
     del field  # its spectrum, before the encoders take their memory again
-    yield from crop_film(source, replace(context, progress=context.between(0.72, 1.0)))
-    context.progress("crop", 1.0)
+    yield from crop_film(source, context)
+
+
+def stages(sizes: Sequence[Size], resolved: Resolved[VideoRpnParams]) -> Plan:
+    """Of a clip of another size or length the spot is extended."""
+    clip = sizes[0]
+    extending = (("spot", 3),) if resolved.shape != (clip.frames, clip.height, clip.width) else ()
+    return (
+        ("periodic", 4),
+        *extending,
+        ("random phase", 11),
+        ("texture", 45),
+        ("encoding", 10),
+        ("spectrum", 2),
+        ("crop", 28),
+    )
 
 
 def _reported(field: VideoNoiseField, progress: Progress) -> Iterator[Real]:
@@ -82,7 +97,7 @@ def _reported(field: VideoNoiseField, progress: Progress) -> Iterator[Real]:
 
 def _views(film: NDArray[np.uint8], field: VideoNoiseField, context: Context) -> Iterator[Picture]:
     """The average frame, and two sections through the block of the squared moduli."""
-    context.progress("spectrum", 0.7)
+    context.progress("spectrum", 0)
     still = Fact("still", "Part of the texture's contrast that stands still", 100 * field.still, "% of the variance")
     average = film.mean(axis=0, dtype=np.float64).astype(np.float32)
     yield encode("average", "Average frame of the crop", average, 255, context, facts=(still,))
@@ -103,5 +118,6 @@ VIDEO_RPN = Method(
     run=run,
     outputs=(*FILMS, *views("average", of=()), *views("spectrum", "spectrum-in-time", deep=False), *SHOWN_CLIP),
     idle=not_extended,
+    stages=stages,
     memory=memory,
 )

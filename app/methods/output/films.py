@@ -13,7 +13,8 @@ from app.images.png_writer import encode_png
 from app.images.video.cube import VideoCube
 from app.images.video.encoding import Encoding
 from app.images.video.writers import Frame, Kind, VideoWriter, name_repeated_edges
-from app.methods.model import Context, Picture, Source
+from app.methods.context import Context
+from app.methods.model import Picture, Source
 
 
 class _File(NamedTuple):
@@ -29,7 +30,6 @@ TEXTURE = (
     _File("preview", "Preview", "webp", "image/webp"),
 )
 BASE_BYTES, PIXEL_BYTES = 40_000_000, {1: 190, 3: 280}  # of a frame, by its channels; measured at 512² to 2048²
-HANDED_OVER = 0.9  # of the time that writing a crop takes: its encoders then have all frames
 CROP = (_File("crop", "Crop", "webm", "video/webm"), _File("crop-mp4", "Crop as MP4", "mp4", "video/mp4"))
 
 
@@ -53,8 +53,7 @@ def texture_film(
     rate : float
         Frames a second.
     context : Context
-        After the last frame, while the encoders finish, its progress is called with the stage ``encoding``, from 0 to
-        1: give ``dataclasses.replace(context, progress=context.between(…))``.
+        After the last frame, while the encoders finish, its progress is called with the stage ``encoding``.
 
     Yields
     ------
@@ -70,18 +69,20 @@ def texture_film(
 
 
 def crop_film(source: Source, context: Context) -> Iterator[Picture]:
-    """Write a moving input: ``crop`` (WebM), ``crop-mp4`` and ``crop-cube``; the stage is ``crop``, from 0 to 1."""
+    """Write a moving input: ``crop`` (WebM), ``crop-mp4`` and ``crop-cube``; the stage is ``crop``."""
     frames, rate = source.clip.frames, source.clip.rate
     count, height, width, channels = frames.shape
     size = width, height, channels, count
     cube = VideoCube(*size)
 
+    step = context.during("crop", (("frames", 9), ("encoding", 1)))
+
     def reported() -> Iterator[Frame]:
         for index, frame in enumerate(frames):
-            context.progress("crop", HANDED_OVER * index / count)
+            step("frames", index / count)
             yield frame
 
-    finishing = partial(context.between(HANDED_OVER, 1), "crop")
+    finishing = partial(step, "encoding")
     yield from _written(_rounded(reported(), cube), CROP, size, rate, context.scratch, finishing)
     yield _picture_of(cube, "crop-cube", "Video cube of the crop")
 

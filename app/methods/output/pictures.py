@@ -6,7 +6,8 @@ from typing import Literal
 import numpy as np
 
 from app.images.png_writer import PngWriter
-from app.methods.model import Context, Fact, Picture, Source
+from app.methods.context import Context
+from app.methods.model import Fact, Picture, Source
 from app.synthesis.arrays import Real
 from app.synthesis.fourier.spectral import LogModulus
 from app.synthesis.parallel import Team, row_blocks

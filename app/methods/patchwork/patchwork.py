@@ -9,10 +9,11 @@ from pydantic import Field
 
 from app.images.png_writer import PngWriter
 from app.methods.announced import shown_inputs, texture, views
+from app.methods.context import Context, Progress
 from app.methods.explanations.patchwork import EXPLANATION
 from app.methods.explanations.references import PATCHWORK as REPORT
 from app.methods.inputs import INPUTS
-from app.methods.model import Context, Fact, Method, Picture, Progress, Size, Source
+from app.methods.model import Fact, Method, Picture, Size, Source
 from app.methods.output.pictures import coordinate_colours, crops, encode
 from app.methods.params import ADVANCED, Resolved, StillParams
 from app.methods.patchwork.limits import (
@@ -96,11 +97,11 @@ def run(sources: Sequence[Source], resolved: Resolved[PatchworkParams], context:
     source = sources[0]
     h = source.pixels
     params, height, width = resolved.params, resolved.height, resolved.width
-    context.progress("cells", 0.0)
+    context.progress("cells", 0)
     cells = jittered_cells(
         height, width, grid=params.grid, sharpness=params.sharpness, tileable=params.tileable, seed=params.seed
     )
-    context.progress("patches", 0.08)
+    context.progress("patches", 0)
     cells = cells_with_reach(cells, "all" if summed(params) else "near", tileable=params.tileable)
     made = Patchwork(h, cells, blend=params.blend, seed=params.seed)
     sources_of = made.sources
@@ -114,11 +115,12 @@ def run(sources: Sequence[Source], resolved: Resolved[PatchworkParams], context:
             work.run("texture", lambda block: levels(block[0], rows(*block, work.checkpoint)), blocks)
             return writer.finish()
 
-        png = streamed(made.rows, h.shape[2], source.peak, context.between(0.1, 0.6))
+        png = streamed(made.rows, h.shape[2], source.peak, context.progress)
         fact = Fact("cells", "Cells", cells.count)
         yield Picture("texture", "Texture", width, height, png, (fact,), kind="texture")
         del made, png
-        context.progress("views", 0.6)
+        step = context.during("views", (("cells", 3), ("pictures", 1)))
+        step("cells", 0)
         places = coordinate_colours(*h.shape[:2])
         colours = cell_colours(cells, sources_of, places)
         soft = params.blend != "sharp"
@@ -126,11 +128,11 @@ def run(sources: Sequence[Source], resolved: Resolved[PatchworkParams], context:
         def paint(top: int, bottom: int, checkpoint: Callable[[], None]) -> Real:
             return paint_cells(cells, colours, top, bottom, soft=soft, checkpoint=checkpoint)
 
-        png = streamed(paint, 3, 1, lambda stage, part: context.progress("views", 0.6 + 0.3 * part))
+        png = streamed(paint, 3, 1, step.within("cells"))
         yield Picture("cells", "Cells, coloured by the place of their source", width, height, png)
+    step("pictures", 0)
     yield _key(cells, sources_of, places, context)
     yield from crops(sources, context)
-    context.progress("views", 1.0)
 
 
 def _key(cells: Cells, sources: NDArray[np.int64], places: Real, context: Context) -> Picture:
@@ -159,6 +161,7 @@ PATCHWORK = Method(
     idle=idle_reach,
     run=run,
     outputs=(texture(), *views("cells", "sources"), *shown_inputs()),
+    stages=lambda sizes, resolved: (("cells", 8), ("patches", 2), ("texture", 50), ("views", 40)),
     toroidal=lambda params: params.tileable,
     memory=memory,
 )

@@ -11,7 +11,8 @@ from pydantic import Field
 from app.errors import InvalidInputError
 from app.images.png_writer import encode_png
 from app.images.video.cube import VideoCube
-from app.methods.model import Context, Fact, Picture, Size, Source
+from app.methods.context import Context
+from app.methods.model import Fact, Picture, Size, Source
 from app.methods.output.films import film_memory, texture_film
 from app.methods.output.pictures import encode
 from app.methods.params import ADVANCED
@@ -74,7 +75,7 @@ def refuse_short(size: Size, frames: int, interval: int, longest: int) -> None:
 def textured(
     frame: Callable[[int], Real], shape: tuple[int, int, int], source: Source, context: Context
 ) -> Iterator[Picture]:
-    """The files of a video texture, from 0 to 0.86 of the run.
+    """The files of a video texture; stages ``frames`` and ``encoding``.
 
     Parameters
     ----------
@@ -87,7 +88,7 @@ def textured(
     context : Context
     """
     frames, height, width = shape
-    made = frames_in_order(frame, frames, context.threads, lambda part: context.progress("frames", 0.02 + 0.76 * part))
+    made = frames_in_order(frame, frames, context.threads, lambda part: context.progress("frames", part))
     yield from texture_film(
         made,
         width=width,
@@ -95,7 +96,7 @@ def textured(
         channels=source.size.channels,
         count=frames,
         rate=source.clip.rate,
-        context=replace(context, progress=context.between(0.78, 0.86)),
+        context=context,
     )
 
 
@@ -105,7 +106,7 @@ def average_picture(average: Real, context: Context) -> Picture:
 
 
 def cells_cube(painter: Painter, shape: tuple[int, int, int], context: Context) -> Picture:
-    """The cells in their sources' colours, as a video cube; stage ``cells``, 0 to 1."""
+    """The cells in their sources' colours, as a video cube; stage ``cells``."""
     frames, height, width = shape
     cube = VideoCube(width, height, 3, frames)
     bottom, right = painter(Window(height - 1, height, 0, width)), painter(Window(0, height, width - 1, width))

@@ -6,10 +6,11 @@ import numpy as np
 from pydantic import Field
 
 from app.methods.announced import shown_inputs, texture, views
+from app.methods.context import Context
 from app.methods.explanations.references import PATCHWORK
 from app.methods.explanations.transfer import EXPLANATION
 from app.methods.inputs import alike
-from app.methods.model import Context, Method, Picture, Size, Slot, Source
+from app.methods.model import Method, Picture, Size, Slot, Source
 from app.methods.output.pictures import coordinate_colours, crops, encode
 from app.methods.params import WHOLE_IN_MEMORY, Resolved, StillParams
 from app.methods.patchwork.limits import (
@@ -27,6 +28,7 @@ from app.methods.patchwork.limits import (
     search_bytes,
 )
 from app.methods.patchwork.pictures import cell_colours, compared_pattern, match_facts
+from app.methods.stages import Plan
 from app.synthesis.parallel import Team, Work, row_blocks
 from app.synthesis.patchwork.jittered_cells import jittered_cells, least_sample
 from app.synthesis.patchwork.patchwork import paint_cells
@@ -34,7 +36,7 @@ from app.synthesis.patchwork.transfer import rescale, transfer
 from app.synthesis.patchwork.unbounded_cells import Reach, cells_with_reach
 
 BYTES_OF_PATTERN = 8  # for each value, beside the search
-STAGES = {"matching": (0.05, 0.7), "averages": (0.7, 0.78), "texture": (0.78, 0.88)}
+STAGES: Plan = (("cells", 5), ("matching", 65), ("averages", 8), ("texture", 12), ("cells", 6), ("views", 4))
 
 
 class TransferParams(StillParams):
@@ -97,7 +99,7 @@ def run(sources: Sequence[Source], resolved: Resolved[TransferParams], context: 
     params = resolved.params
     texture, pattern = alike(sources)
     peak = sources[0].peak
-    context.progress("cells", 0.0)
+    context.progress("cells", 0)
     height, width, channels = pattern.shape
     cells = jittered_cells(
         height, width, grid=params.grid, sharpness=params.sharpness, tileable=False, seed=params.seed
@@ -113,26 +115,25 @@ def run(sources: Sequence[Source], resolved: Resolved[TransferParams], context: 
             peak=peak,
             candidates=params.candidates,
             seed=params.seed,
-            work=Work(team, lambda stage, part: context.between(*STAGES[stage])(stage, part)),
+            work=Work(team, context.progress),
         )
         facts = match_facts(made.matches, channels, peak)
         yield encode("texture", "Texture", made.output, peak, context, kind="texture", facts=facts)
-        context.progress("cells", 0.9)
+        context.progress("cells", 0)
         colours = cell_colours(cells, made.matches.places, coordinate_colours(*texture.shape[:2]))
         picture = np.empty((height, width, 3), np.float32)
         joined = cells_with_reach(cells, params.reach, tileable=False)
-        work = Work(team, context.between(0.9, 0.95))
+        work = Work(team, context.progress)
 
         def paint(rows: tuple[int, int]) -> None:
             picture[slice(*rows)] = paint_cells(joined, colours, *rows, checkpoint=work.checkpoint).transpose(1, 2, 0)
 
         work.run("cells", paint, row_blocks(height))
     yield encode("cells", "Cells, coloured by the place of their source", picture, 1, context)
-    context.progress("views", 0.96)
+    context.progress("views", 0)
     yield encode("average", "Averages of the patches", made.average, peak, context)
     yield compared_pattern(pattern, params.rescale, peak, context)
     yield from crops(sources, context)
-    context.progress("views", 1.0)
 
 
 TRANSFER = Method(
@@ -155,6 +156,7 @@ TRANSFER = Method(
         *views("pattern", of=("rescale",)),
         *shown_inputs(2, least=2),
     ),
+    stages=lambda sizes, resolved: STAGES,
     size=pattern_size,
     toroidal=lambda params: False,
     most_pixels=WHOLE_IN_MEMORY,

@@ -1,7 +1,6 @@
 """`video-patchwork`: random patches of a clip, over time and over space."""
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -9,9 +8,10 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from app.methods.announced import FILMS, SHOWN_CLIP, views
+from app.methods.context import Context
 from app.methods.explanations.references import PATCHWORK
 from app.methods.explanations.video_patchwork import EXPLANATION
-from app.methods.model import Context, Method, Picture, Size, Slot, Source
+from app.methods.model import Method, Picture, Size, Slot, Source
 from app.methods.output.films import crop_film
 from app.methods.params import Resolved, SeamlessParams
 from app.methods.patchwork.limits import (
@@ -102,10 +102,9 @@ def run(sources: Sequence[Source], resolved: Resolved[VideoPatchworkParams], con
     context.progress("cells", 0)
     frame, painter = (_mosaic if params.arrangement == "mosaic" else _fixed)(film, shape, params)
     yield from textured(frame, shape, source, context)
-    yield cells_cube(painter, shape, replace(context, progress=context.between(0.86, 0.9)))
+    yield cells_cube(painter, shape, context)
     yield average_picture(film.mean(0, np.float32), context)
-    yield from crop_film(source, replace(context, progress=context.between(0.9, 1)))
-    context.progress("crop", 1)
+    yield from crop_film(source, context)
 
 
 def _fixed(
@@ -158,6 +157,7 @@ VIDEO_PATCHWORK = Method(
     idle=idle_reach,
     run=run,
     outputs=(*FILMS, *views("cells", deep=False), *views("average", of=()), *SHOWN_CLIP),
+    stages=lambda sizes, resolved: (("cells", 2), ("frames", 76), ("encoding", 8), ("cells", 4), ("crop", 10)),
     toroidal=lambda params: params.tileable,
     memory=memory,
 )

@@ -8,9 +8,10 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from app.methods.announced import FILMS, SHOWN_CLIP, views
+from app.methods.context import Context
 from app.methods.explanations.references import PATCHWORK
 from app.methods.explanations.video_transfer import EXPLANATION
-from app.methods.model import Context, Method, Picture, Size, Slot, Source
+from app.methods.model import Method, Picture, Size, Slot, Source
 from app.methods.output.films import crop_film
 from app.methods.output.pictures import encode
 from app.methods.params import LoopParams, Resolved
@@ -39,6 +40,7 @@ from app.methods.patchwork.pictures import (
     sharpness,
     textured,
 )
+from app.methods.stages import Plan
 from app.synthesis.arrays import Real
 from app.synthesis.luminance import luminance
 from app.synthesis.parallel import Team, Work
@@ -110,24 +112,23 @@ def run(sources: Sequence[Source], resolved: Resolved[VideoTransferParams], cont
     wanted = _with_channels(pattern.pixels * np.float32(PEAK / pattern.peak), average.shape[2])
     if params.rescale:
         wanted = rescale(wanted, average)
-    places = _matched(average, wanted, cells, params, replace(context, progress=context.between(0, 0.2)))
+    places = _matched(average, wanted, cells, params, context)
     transitions = Transitions(
         cells.count, len(film), shape[0], params.interval, loop=params.loop, rng=random_numbers(params.seed, IN_TIME)
     )
     cells = cells_with_reach(cells, params.reach, tileable=False)
     margin = cells.margin(places, *film.shape[1:3])
     made = VideoPatchwork(PaddedClip(film, margin), cells, places, transitions)
-    yield from textured(made.frame, shape, clip, replace(context, progress=context.between(0.2, 0.86)))
+    yield from textured(made.frame, shape, clip, context)
     yield cells_cube(
         lambda window: FixedCells(cells, window, places, transitions, film.shape[:3]).paint,
         shape,
-        replace(context, progress=context.between(0.86, 0.9)),
+        context,
     )
     yield average_picture(average, context)
     yield compared_pattern(wanted, params.rescale, PEAK, context)
-    yield from crop_film(clip, replace(context, progress=context.between(0.9, 1)))
+    yield from crop_film(clip, context)
     yield encode("crop-2", "Pattern", pattern.pixels, pattern.peak, context)
-    context.progress("crop", 1)
 
 
 def _matched(
@@ -154,6 +155,8 @@ def _with_channels(pixels: Real, channels: int) -> Real:
     return luminance(pixels)[:, :, None] if channels == 1 else np.repeat(pixels, channels, axis=2)
 
 
+STAGES: Plan = (("cells", 1), ("matching", 20), ("frames", 50), ("encoding", 8), ("cells", 8), ("crop", 13))
+
 VIDEO_TRANSFER = Method(
     name="video-transfer",
     title="Video transfer",
@@ -176,6 +179,7 @@ VIDEO_TRANSFER = Method(
         *SHOWN_CLIP,
         *views("crop-2", of=()),
     ),
+    stages=lambda sizes, resolved: STAGES,
     size=pattern_size,
     toroidal=lambda params: False,
     memory=memory,

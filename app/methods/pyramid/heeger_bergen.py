@@ -8,14 +8,16 @@ from pydantic import Field
 
 from app.errors import InvalidInputError
 from app.methods.announced import Announced, shown_inputs, texture, views
+from app.methods.context import Context
 from app.methods.explanations.heeger_bergen import EXPLANATION
 from app.methods.explanations.references import HEEGER_BERGEN as ARTICLE
 from app.methods.explanations.references import IPOL_HEEGER_BERGEN, PERIODIC_PLUS_SMOOTH, STEERABLE_PYRAMID
 from app.methods.inputs import INPUTS, refuse_other_size
-from app.methods.model import Context, Fact, Method, Picture, Size, Source
+from app.methods.model import Fact, Method, Picture, Size, Source
 from app.methods.output.pictures import crops, encode
 from app.methods.params import ADD_SMOOTH, ADVANCED, Resolved, StillParams
 from app.methods.pyramid.sub_bands import mosaic
+from app.methods.stages import Plan
 from app.synthesis.arrays import Real
 from app.synthesis.fourier.periodic import smooth_planes
 from app.synthesis.parallel import Team, Work
@@ -102,16 +104,13 @@ def run(sources: Sequence[Source], resolved: Resolved[HeegerBergenParams], conte
     """The texture, how it came about, and the sub-bands of sample and texture."""
     source = sources[0]
     params, height, width = resolved.params, resolved.height, resolved.width
-    context.progress("sample", 0.0)
+    context.progress("sample", 0)
     decomposition = Decomposition(params.scales, params.orientations, params.edges)
     pyramid = SteerablePyramid(height, width, params.scales, params.orientations)
-    ends = {"sample": 0.1, "noise": 0.14}
-    ends |= {_stage(number): 0.14 + 0.66 * number / params.iterations for number in range(1, params.iterations + 1)}
-    begins = dict(zip(ends, (0.0, *ends.values()), strict=False))
-    begins["sub-bands"], ends["sub-bands"] = 0.96, 1.0
+    bands = context.during("sub-bands", (("crop", 1), ("texture", 1), ("distances", 1)))
     views = {}
     with Team(context.threads) as team:
-        work = Work(team, lambda stage, part: context.between(begins[stage], ends[stage])(stage, part))
+        work = Work(team, lambda stage, part: (bands if stage == "distances" else context.progress)(stage, part))
         sample = SampleStatistics(source.pixels, decomposition, pyramid, work)
         synthesis = Synthesis(sample, pyramid, params.seed, work)
         views["noise", "Noise with the crop's histogram"] = synthesis.planes(VIEW)
@@ -122,23 +121,37 @@ def run(sources: Sequence[Source], resolved: Resolved[HeegerBergenParams], conte
         texture = synthesis.planes()
         if params.add_smooth:
             texture += smooth_planes(source.pixels, context.threads)
-        context.progress("texture", 0.8)
+        context.progress("texture", 0)
         yield encode("texture", "Texture", _pixels(texture), source.peak, context, kind="texture")
         del texture
-        context.progress("crop", 0.84)
+        context.progress("crop", 0)
         yield from crops(sources, context)
-        context.progress("iterations", 0.86)
+        context.progress("iterations", 0)
         for (name, title), planes in views.items():
             yield encode(name, title, _pixels(planes), source.peak, context)
-        picture = mosaic(sample.channels[0], decomposition, context.between(0.88, 0.92))
+        picture = mosaic(sample.channels[0], decomposition, bands.within("crop"))
         title = "Sub-bands of the crop's first principal component"
         yield encode("crop-bands", title, picture, 1, context, facts=_shares(sample))
-        picture = mosaic(synthesis.channel(0), replace(decomposition, edges="periodic"), context.between(0.92, 0.96))
+        picture = mosaic(synthesis.channel(0), replace(decomposition, edges="periodic"), bands.within("texture"))
         title = "Sub-bands of the texture's first principal component"
-        distances = synthesis.distances("sub-bands")
+        distances = synthesis.distances("distances")
         distance = 100 * sum(distances.values()) / len(distances)
         fact = Fact("distance", "Distance of the sub-bands' histograms, on average", distance, "% of their deviation")
         yield encode("texture-bands", title, picture, 1, context, facts=(fact,))
+
+
+def stages(sizes: Sequence[Size], resolved: Resolved[HeegerBergenParams]) -> Plan:
+    """One for each iteration, between preparing it and showing what came of it."""
+    iterations = tuple((_stage(number), 13) for number in range(1, resolved.params.iterations + 1))
+    return (
+        ("sample", 10),
+        ("noise", 4),
+        *iterations,
+        ("texture", 4),
+        ("crop", 2),
+        ("iterations", 2),
+        ("sub-bands", 12),
+    )
 
 
 def _stage(iteration: int) -> str:
@@ -186,5 +199,6 @@ HEEGER_BERGEN = Method(
         *views("crop-bands", of=_MATCHED),
         *views("texture-bands", of=_HISTORY),
     ),
+    stages=stages,
     toroidal=lambda params: not params.add_smooth,
 )

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from app.methods.model import Progress
+from app.methods.context import Progress
 from app.synthesis.arrays import Real
 from app.synthesis.pyramid.heeger_bergen import ChannelBands, Decomposition
 from app.synthesis.pyramid.pyramid import Band

@@ -8,11 +8,12 @@ from pydantic import Field
 
 from app.errors import InvalidInputError
 from app.methods.announced import shown_inputs, texture, views
+from app.methods.context import Context
 from app.methods.explanations.efros_leung import EXPLANATION
 from app.methods.explanations.references import EFROS_LEUNG as EFROS_LEUNG_ARTICLE
 from app.methods.explanations.references import IPOL_EFROS_LEUNG
 from app.methods.inputs import INPUTS
-from app.methods.model import Context, Fact, Method, Picture, Progress, Size, Source
+from app.methods.model import Fact, Method, Picture, Size, Source
 from app.methods.output.pictures import coordinate_colours, crops, encode
 from app.methods.params import Resolved, StillParams
 from app.synthesis.sampling.efros_leung import border_share, efros_leung, verbatim_share
@@ -103,7 +104,7 @@ def run(sources: Sequence[Source], resolved: Resolved[EfrosLeungParams], context
         tolerance=params.tolerance,
         seed=params.seed,
         threads=context.threads,
-        progress=_overall(context),
+        progress=context.progress,
     )
     border = border_share(grown, size.height, size.width, params.half_patch)
     shares = (
@@ -111,7 +112,7 @@ def run(sources: Sequence[Source], resolved: Resolved[EfrosLeungParams], context
         Fact("border", "Pixels drawn from where the window reaches over the crop's border", border, "%"),
     )
     yield encode("texture", "Texture", grown.texture, peak, context, kind="texture", facts=shares)
-    context.progress("views", 0.97)
+    context.progress("views", 0)
     yield from crops(sources, context)
     colours = coordinate_colours(*h.shape[:2])
     copied = colours[grown.copied[:, :, 0], grown.copied[:, :, 1]]
@@ -119,13 +120,6 @@ def run(sources: Sequence[Source], resolved: Resolved[EfrosLeungParams], context
     yield encode("copy-map-key", "Key of the copy map: the colours of the crop's places", colours, 1, context)
     order = grown.order.astype(np.float32)
     yield encode("order", "Order of growth, from black to white", order, max(1, grown.order.max()), context)
-    context.progress("views", 1.0)
-
-
-def _overall(context: Context) -> Progress:
-    """The stages of `efros_leung` one after the other."""
-    stages = {"order": (0.0, 0.02), "patches": (0.02, 0.05), "growth": (0.05, 0.97)}
-    return lambda stage, part: context.between(*stages[stage])(stage, part)
 
 
 EFROS_LEUNG = Method(
@@ -139,6 +133,7 @@ EFROS_LEUNG = Method(
     check=check,
     run=run,
     outputs=(texture(), *shown_inputs(), *views("copy-map"), *views("copy-map-key", of=()), *views("order")),
+    stages=lambda sizes, resolved: (("order", 2), ("patches", 3), ("growth", 92), ("views", 3)),
     size=default_size,
     toroidal=lambda params: False,
 )

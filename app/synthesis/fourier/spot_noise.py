@@ -73,7 +73,6 @@ def convolve(
     noises: Sequence[Complex],
     threads: int = 1,
     progress: Progress | None = None,
-    begin: float = 0.0,
 ) -> Real:
     """Convolve spots with white noises and add up the results: the noise of several spots that share their mean.
 
@@ -86,9 +85,7 @@ def convolve(
     threads : int
         For the transforms; the result does not depend on it.
     progress : callable ``(stage, part)``, optional
-        Called between channels; what it raises stops the work.
-    begin : float
-        Part of the caller's work that is done before, 0–1: the progress goes from there to 1.
+        Called between transforms; what it raises stops the work.
 
     Returns
     -------
@@ -100,13 +97,14 @@ def convolve(
         total: Complex | None = None
         for number, (spot, noise) in enumerate(zip(spots, noises, strict=True)):
             if progress:
-                done = (channel + number / len(spots)) / len(texture)
-                progress("texture", begin + (1 - begin) * done)
+                progress("texture", (channel + number / (len(spots) + 1)) / len(texture))
             spectrum = transform(spot.planes[channel], spot, threads)
             spectrum *= noise
             total = spectrum if total is None else np.add(total, spectrum, out=total)
         assert total is not None
         total[0, 0] = 0
+        if progress:
+            progress("texture", (channel + len(spots) / (len(spots) + 1)) / len(texture))
         noise_plane = scipy.fft.irfft2(total, s=texture.shape[1:], overwrite_x=True, workers=threads)
         np.add(noise_plane, np.float32(mean), out=texture[channel])
     if progress:

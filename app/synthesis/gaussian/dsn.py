@@ -121,7 +121,7 @@ def dsn(spot: Spot, order: int, *, seed: int = 0, threads: int = 1, progress: Pr
     threads : int
         The result does not depend on it.
     progress : callable ``(stage, part)``, optional
-        Called between transforms with the part of all the work that is done; what it raises stops it.
+        Called between transforms; what it raises stops the work.
 
     Returns
     -------
@@ -139,9 +139,9 @@ def dsn(spot: Spot, order: int, *, seed: int = 0, threads: int = 1, progress: Pr
         progress("points", 0.0)
     noise = impulses(spot.height, spot.width, order, seed)
     if progress:
-        progress("points", 0.15)
+        progress("points", 0.5)
     spectrum = scipy.fft.rfft2(noise, overwrite_x=True, workers=threads)
-    return convolve([spot], [spectrum], threads, progress, begin=0.3)
+    return convolve([spot], [spectrum], threads, progress)
 
 
 def spot_shape(kind: Literal["disc", "gaussian"], height: int, width: int, radius: float) -> Real:

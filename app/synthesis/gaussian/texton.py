@@ -159,7 +159,7 @@ def texton_noise(
     threads : int
         The result does not depend on it.
     progress : callable ``(stage, part)``, optional
-        Called between transforms with the part of all the work that is done; what it raises stops it.
+        Called between transforms; what it raises stops the work.
 
     Returns
     -------
@@ -173,7 +173,7 @@ def texton_noise(
     del own
     shares = []
     for number, spot in enumerate(spots):
-        report("random phase", 0.1 + 0.2 * number / len(spots))
+        report("random phase", (1 + 2 * number / len(spots)) / 5)
         shares.append(transform(luminance(spot.planes.transpose(1, 2, 0)), spot, threads).conj())
     norm = np.sqrt(sum(np.square(share.real) + np.square(share.imag) for share in shares))
     nowhere = norm == 0
@@ -183,10 +183,10 @@ def texton_noise(
         np.multiply(share, phase, out=share)
         share[nowhere] = 1 / np.sqrt(len(shares))
     del norm, phase
-    report("random phase", 0.3)
+    report("random phase", 3 / 5)
     for block in column_blocks(width):
         _draw(shares, block, width, seed)
-    return convolve(spots, shares, threads, progress, begin=0.45)
+    return convolve(spots, shares, threads, progress)
 
 
 def _draw(shares: Sequence[Complex], block: Block, width: int, seed: int) -> None:

@@ -89,7 +89,7 @@ class VideoNoiseField:
     team : Team
         The threads that work.
     progress : callable ``(stage, part)``
-        Called between pieces of work with the part of all of it that is done; what it raises stops the work.
+        Called between pieces of work; what it raises stops the work.
 
     Attributes
     ----------
@@ -117,16 +117,18 @@ class VideoNoiseField:
         self._team, self._progress = team, progress
         video = centre_video(video, shape)
         self.mean = video.mean(axis=(0, 1, 2), dtype=np.float64)
-        spectrum = self._frame_spectra(video)
+        extended = video.shape[:3] != shape
+        spectrum = self._frame_spectra(video, ("periodic", 0.0, 0.5 if extended else 1.0))
         jump = spectrum[:, 0] - spectrum[:, -1]
-        if video.shape[:3] == shape:
-            noise = self._in_time(spectrum, shape[2], ("random phase", 0.2, 1.0), jump=jump, randomise=True)
-            gain = 1.0
-        else:
-            own = self._in_time(spectrum, video.shape[2], ("periodic", 0.2, 0.4), jump=jump)
+        drawing = ("random phase", 0.0, 1.0)
+        if extended:
+            own = self._in_time(spectrum, video.shape[2], ("periodic", 0.5, 1.0), jump=jump)
             spectrum, still = self._extend(spectrum, video.shape[2])
-            noise = self._in_time(spectrum, shape[2], ("random phase", 0.6, 1.0), still=still, randomise=True)
+            noise = self._in_time(spectrum, shape[2], drawing, still=still, randomise=True)
             gain = sqrt(own.variance / noise.variance) if noise.variance > 0 else 1.0
+        else:
+            noise = self._in_time(spectrum, shape[2], drawing, jump=jump, randomise=True)
+            gain = 1.0
         self._spectrum, self._gain = spectrum, np.float32(gain)
         self.power, self.power_in_time = (power * np.float32(gain**2) for power in (noise.power, noise.in_time))
         self.still = noise.still
@@ -144,7 +146,7 @@ class VideoNoiseField:
         name, begin, end = stage
         self._team.run(task, range(count), lambda part: self._progress(name, begin + (end - begin) * part))
 
-    def _frame_spectra(self, video: Video) -> Complex:
+    def _frame_spectra(self, video: Video, stage: tuple[str, float, float]) -> Complex:
         """Half spectra of the frames' periodic components without the mean, (C, T, H, W // 2 + 1)."""
         frames, height, width, channels = video.shape
         spectrum = np.empty((channels, frames, height, width // 2 + 1), np.complex64)
@@ -156,7 +158,7 @@ class VideoNoiseField:
             spectrum[:, index] -= SmoothSpectrum(h).whole()
 
         self._progress("periodic", 0.0)
-        self._run(transform_frame, frames, ("periodic", 0.0, 0.2))
+        self._run(transform_frame, frames, stage)
         return spectrum
 
     def _in_time(
@@ -227,7 +229,7 @@ class VideoNoiseField:
             frame[:, 0, 0] = height * across * mean
             np.multiply(frame, gains[index], out=extended[:, top + index])
 
-        self._run(spread_frame, count, ("spot", 0.4, 0.6))
+        self._run(spread_frame, count, ("spot", 0.0, 1.0))
         return extended, spread(average)[0]
 
 

@@ -6,8 +6,9 @@ from imagecodecs import png_decode
 from pydantic import ValidationError
 
 from app.errors import InvalidInputError
+from app.methods.context import Context
 from app.methods.gaussian.dsn import DSN, ORDERS
-from app.methods.model import Context, Size, Source
+from app.methods.model import Size, Source
 from app.methods.registry import METHODS
 
 GALLERY = [f"dsn-{order}" for order in ORDERS]

@@ -10,8 +10,9 @@ from PIL import Image
 from pydantic import ValidationError
 
 from app.errors import CancelledError, InvalidInputError
+from app.methods.context import Context
 from app.methods.gaussian.random_phase import RandomPhaseParams
-from app.methods.model import Context, Size, Source
+from app.methods.model import Size, Source
 from app.methods.params import MAX_SEED
 from app.methods.registry import METHODS, method
 from app.synthesis.fourier.periodic import periodic_component

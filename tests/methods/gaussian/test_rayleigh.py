@@ -5,8 +5,9 @@ import pytest
 from imagecodecs import png_decode
 
 from app.errors import InvalidInputError
+from app.methods.context import Context
 from app.methods.gaussian.rayleigh import RAYLEIGH
-from app.methods.model import Context, Size, Source
+from app.methods.model import Size, Source
 from app.methods.registry import METHODS
 
 

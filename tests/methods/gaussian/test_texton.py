@@ -5,8 +5,9 @@ import pytest
 from imagecodecs import png_decode
 from pydantic import ValidationError
 
+from app.methods.context import Context
 from app.methods.gaussian.texton import TEXTON
-from app.methods.model import Context, Source
+from app.methods.model import Source
 from app.methods.registry import METHODS
 from app.synthesis.gaussian.cut_texton import cut_texton, lag_error
 from app.synthesis.gaussian.texton import extend_texton, texton

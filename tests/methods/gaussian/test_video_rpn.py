@@ -7,8 +7,9 @@ import pytest
 from imagecodecs import png_decode
 
 from app.images.video.reader import read_video
+from app.methods.context import Context
 from app.methods.gaussian.video_rpn import VIDEO_RPN
-from app.methods.model import Context, Film, Size, Source
+from app.methods.model import Film, Size, Source
 from app.methods.output.films import film_memory
 from app.synthesis.gaussian.video_rpn import VideoNoiseField, video_rpn
 from app.synthesis.parallel import Team

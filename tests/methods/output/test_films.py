@@ -12,7 +12,8 @@ from PIL import Image
 
 from app.images.convert import GROUND
 from app.images.video.reader import read_video
-from app.methods.model import Context, Film, Source
+from app.methods.context import Context
+from app.methods.model import Film, Source
 from app.methods.output.films import crop_film, film_memory, texture_film
 from tests.images.clips import psnr
 from tests.images.video.memory import printed
@@ -158,7 +159,7 @@ import sys
 import numpy as np
 from pathlib import Path
 from app.methods.output.films import texture_film
-from app.methods.model import Context
+from app.methods.context import Context
 side, channels, scratch = int(sys.argv[1]), int(sys.argv[2]), Path(sys.argv[3])
 noise = np.random.default_rng(0).integers(0, 256, (side + 16, side + 16, channels), dtype=np.uint8)
 frames = (noise[t : t + side, t : t + side] for t in range(16))

@@ -6,7 +6,8 @@ from imagecodecs import png_decode
 from pydantic import ValidationError
 
 from app.errors import InvalidInputError
-from app.methods.model import Context, Size, Source
+from app.methods.context import Context
+from app.methods.model import Size, Source
 from app.methods.pyramid.heeger_bergen import HEEGER_BERGEN, HeegerBergenParams
 from app.synthesis.pyramid.heeger_bergen import Decomposition, heeger_bergen
 

@@ -8,7 +8,8 @@ from imagecodecs import png_decode
 from pydantic import ValidationError
 
 from app.errors import InvalidInputError
-from app.methods.model import Context, Size, Source
+from app.methods.context import Context
+from app.methods.model import Size, Source
 from app.methods.sampling.efros_leung import EFROS_LEUNG, EfrosLeungParams
 from app.synthesis.sampling.efros_leung import border_share, efros_leung, verbatim_share
 
