@@ -1,52 +1,25 @@
-"""What the methods that lay patches of a crop have in common."""
+"""Limits of the patchwork methods: crops too small for their patches, sums and searches too long, memory."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
-
-from pydantic import Field
+from typing import Any
 
 from app.errors import InvalidInputError
 from app.methods.model import Size
-from app.methods.params import ADVANCED, Resolved
+from app.methods.params import Resolved
+from app.methods.patchwork.params import LEAST_GRID, PatchParams
 from app.synthesis.patchwork.cell_match import HALF
 from app.synthesis.patchwork.cell_shapes import reach as near_reach
 from app.synthesis.patchwork.cells import LEFT_OUT
 from app.synthesis.patchwork.jittered_cells import SLACK
-from app.synthesis.patchwork.unbounded_cells import ENDS, Reach, count_terms, span, table_bytes
+from app.synthesis.patchwork.unbounded_cells import ENDS, count_terms, span, table_bytes
 
-LEAST_GRID = 4
 BYTES_OF_CELL = 1000  # while cells are laid out
 MOST_TERMS = 15 * 10**9  # of the sum over all cells: a minute or two on two processors
 MOST_OF_A_VIDEO, MOST_OF_A_FRAME = 10**10, 5 * 10**8  # which mixes three pictures, and stops between frames only
 
 
-def reach(default: Reach) -> Any:
-    """The field of the parameter that says how many patches count at a pixel."""
-    return Field(
-        default,
-        title="Patches that count",
-        description="At every pixel 'all' patches count, however far away, as the article's sum says; or those 'near' "
-        "alone: weights are lowered so that they end three grids from a patch's centre, which is quick for any size. "
-        "From a sharpness of 6 on it makes no difference.",
-        json_schema_extra=ADVANCED,
-    )
-
-
-class Joining(Protocol):
-    """Parameters of a method that joins patches; those of patchwork have a ``blend`` as well."""
-
-    @property
-    def grid(self) -> int: ...
-
-    @property
-    def sharpness(self) -> float: ...
-
-    @property
-    def reach(self) -> Reach: ...
-
-
-def summed(params: Joining) -> bool:
+def summed(params: PatchParams) -> bool:
     """Whether all cells count, and not only those that are near."""
     return params.reach == "all" and not _idle(params)
 
@@ -57,7 +30,7 @@ def idle_reach(sizes: Sequence[Size], resolved: Resolved[Any]) -> Mapping[str, s
     return {"reach": words} if words else {}
 
 
-def _idle(params: Joining) -> str:
+def _idle(params: PatchParams) -> str:
     if getattr(params, "blend", None) == "sharp":
         return "a sharp join shows the nearest patch alone; take another join, or leave it out."
     if params.sharpness >= ENDS:
@@ -65,7 +38,7 @@ def _idle(params: Joining) -> str:
     return ""
 
 
-def refuse_long_sum(params: Joining, height: int, width: int, *, tileable: bool) -> None:
+def refuse_long_sum(params: PatchParams, height: int, width: int, *, tileable: bool) -> None:
     """Refuse a plane in which too many cells count at each of too many pixels.
 
     Raises
@@ -96,7 +69,7 @@ def _too_long(products: int, counted: str, pixels: int) -> InvalidInputError:
 class Reached:
     """What joining patches on a plane of some height and width takes, at most."""
 
-    params: Joining
+    params: PatchParams
     height: int
     width: int
     tileable: bool
@@ -164,13 +137,6 @@ def refuse_small(size: Size, grid: int, needs: Callable[[int], tuple[int, int]])
 MOST_WORK = 10**11  # products: a few minutes on two processors
 PRODUCTS_OF_A_PLACE = 16  # that comparing a patch with one of all places takes time for
 SEARCHED_TEXTURE, SEARCHED_PATTERN = (8, 24), (16, 0)  # bytes for each value and for each pixel of them
-
-RESCALE: Any = Field(
-    True,
-    title="Rescale the pattern's colours",
-    description="Give every channel of the pattern the texture's mean and range before they are compared, so that "
-    "dark and light find their like. Off: the colours are compared as they are.",
-)
 
 
 def pattern_size(sizes: Sequence[Size]) -> tuple[int, int]:

@@ -18,14 +18,13 @@ from app.methods.output.pictures import coordinate_colours, crops, encode
 from app.methods.params import ADVANCED, Resolved, StillParams
 from app.methods.patchwork.limits import (
     BYTES_OF_CELL,
-    LEAST_GRID,
     Reached,
     idle_reach,
-    reach,
     refuse_long_sum,
     refuse_small,
     summed,
 )
+from app.methods.patchwork.params import grid_field, reach_field, sharpness_field
 from app.methods.patchwork.pictures import cell_colours
 from app.synthesis.arrays import Real
 from app.synthesis.parallel import Team, Work, row_blocks
@@ -44,21 +43,15 @@ Rows = Callable[[int, int, Callable[[], None]], Real]
 class PatchworkParams(StillParams):
     """Parameters of patchwork."""
 
-    grid: int = Field(
+    grid: int = grid_field(
         64,
-        ge=LEAST_GRID,
-        le=1024,
-        title="Grid",
-        description="Pixels from one patch to the next, about. What is smaller than a patch is kept whole; a crop of "
-        "many times the grid gives patches more places to come from. At sharpness 6 it must be 3½ times the grid.",
+        "What is smaller than a patch is kept whole; a crop of many times the grid gives patches more places to come "
+        "from. At sharpness 6 it must be 3½ times the grid.",
     )
-    sharpness: float = Field(
+    sharpness: float = sharpness_field(
         6,
-        ge=1,
-        le=40,
-        title="Sharpness f",
-        description="How suddenly a patch gives way to its neighbour. The higher, the more suddenly, and the less of "
-        "the crop's border goes into joins; a very low one lets many patches overlap.",
+        ". The higher, the more suddenly, and the less of the crop's border goes into joins; a very low one lets many "
+        "patches overlap.",
     )
     blend: Literal["deviation", "feather", "sharp"] = Field(
         "deviation",
@@ -68,7 +61,7 @@ class PatchworkParams(StillParams):
         "see what the first is for.",
         json_schema_extra=ADVANCED,
     )
-    reach: Reach = reach("all")
+    reach: Reach = reach_field("all")
     tileable: bool = Field(
         True,
         title="Tileable",

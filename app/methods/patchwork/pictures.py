@@ -2,11 +2,9 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
 
 from app.errors import InvalidInputError
 from app.images.png_writer import encode_png
@@ -15,7 +13,6 @@ from app.methods.context import Context
 from app.methods.model import Fact, Picture, Size, Source
 from app.methods.output.films import film_memory, texture_film
 from app.methods.output.pictures import encode
-from app.methods.params import ADVANCED
 from app.methods.patchwork.limits import Reached
 from app.synthesis.arrays import Real
 from app.synthesis.patchwork.best_places import Matches
@@ -25,27 +22,7 @@ from app.synthesis.patchwork.video_patchwork import frames_in_order
 Painter = Callable[[Window], Callable[[int], Real]]  # of a window, then of a frame
 
 IN_TIME = 3  # stream of random numbers; those before lay out the cells and draw or match their sources
-INTERVAL: Any = Field(
-    18,
-    ge=1,
-    le=600,
-    title="Interval",
-    description="Frames from one transition in time to the next, about. Longer ones keep longer movements; the clip "
-    "must hold what is seen around a transition, about 2½ intervals.",
-)
 HELD = 8  # frames at a time, in single precision: as many as threads are likely, and what each works with
-
-
-def sharpness(default: float) -> Any:
-    """The field of the parameter f."""
-    return Field(
-        default,
-        ge=1,
-        le=40,
-        title="Sharpness f",
-        description="How suddenly a patch gives way to its neighbour: the higher, the more suddenly.",
-        json_schema_extra=ADVANCED,
-    )
 
 
 def refuse_short(size: Size, frames: int, interval: int, longest: int) -> None:

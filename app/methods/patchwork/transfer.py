@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from pydantic import Field
 
 from app.methods.announced import shown_inputs, texture, views
 from app.methods.context import Context
@@ -15,18 +14,16 @@ from app.methods.output.pictures import coordinate_colours, crops, encode
 from app.methods.params import WHOLE_IN_MEMORY, Resolved, StillParams
 from app.methods.patchwork.limits import (
     BYTES_OF_CELL,
-    LEAST_GRID,
-    RESCALE,
     Reached,
     idle_reach,
     pattern_size,
-    reach,
     refuse_long_search,
     refuse_long_sum,
     refuse_other_size,
     refuse_small,
     search_bytes,
 )
+from app.methods.patchwork.params import RESCALE, candidates_field, grid_field, reach_field, sharpness_field
 from app.methods.patchwork.pictures import cell_colours, compared_pattern, match_facts
 from app.methods.stages import Plan
 from app.synthesis.parallel import Team, Work, row_blocks
@@ -42,34 +39,21 @@ STAGES: Plan = (("cells", 5), ("matching", 65), ("averages", 8), ("texture", 12)
 class TransferParams(StillParams):
     """Parameters of the texture transfer."""
 
-    grid: int = Field(
+    grid: int = grid_field(
         16,
-        ge=LEAST_GRID,
-        le=1024,
-        title="Grid",
-        description="Pixels from one patch to the next, about. Smaller patches follow the pattern more closely, larger "
-        "ones keep more of the texture. At sharpness 2 the texture must be five times the grid at least, and better "
-        "twenty times.",
+        "Smaller patches follow the pattern more closely, larger ones keep more of the texture. At sharpness 2 the "
+        "texture must be five times the grid at least, and better twenty times.",
     )
-    sharpness: float = Field(
-        2,
-        ge=1,
-        le=40,
-        title="Sharpness f",
-        description="How suddenly a patch gives way to its neighbour: 2 blends them widely, as brush strokes do, 20 "
-        "cuts them like the pieces of a mosaic.",
+    sharpness: float = sharpness_field(
+        2, ": 2 blends them widely, as brush strokes do, 20 cuts them like the pieces of a mosaic."
     )
-    candidates: int = Field(
-        200,
-        ge=0,
-        le=100_000,
-        title="Candidates",
-        description="How many places of the texture, drawn at random, are compared with each patch of the pattern; the "
-        "best is taken. More follow the pattern more closely, take longer, and repeat the same places more often. 0: "
-        "all places.",
+    candidates: int = candidates_field(
+        "How many places of the texture, drawn at random, are compared with each patch of the pattern; the best is "
+        "taken. More follow the pattern more closely, take longer, and repeat the same places more often. 0: all "
+        "places."
     )
     rescale: bool = RESCALE
-    reach: Reach = reach("near")
+    reach: Reach = reach_field("near")
 
 
 def check(sizes: Sequence[Size], resolved: Resolved[TransferParams]) -> None:

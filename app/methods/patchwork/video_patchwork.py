@@ -15,17 +15,15 @@ from app.methods.model import Method, Picture, Size, Slot, Source
 from app.methods.output.films import crop_film
 from app.methods.params import Resolved, SeamlessParams
 from app.methods.patchwork.limits import (
-    LEAST_GRID,
     Reached,
     idle_reach,
-    reach,
     refuse_long_frames,
     refuse_small,
     summed,
 )
+from app.methods.patchwork.params import INTERVAL, grid_field, reach_field, sharpness_field
 from app.methods.patchwork.pictures import (
     IN_TIME,
-    INTERVAL,
     Painter,
     average_picture,
     cells_cube,
@@ -33,7 +31,6 @@ from app.methods.patchwork.pictures import (
     frames_bytes,
     patchwork_bytes,
     refuse_short,
-    sharpness,
     textured,
 )
 from app.synthesis.arrays import Real
@@ -49,13 +46,10 @@ from app.synthesis.patchwork.video_patchwork import PaddedClip, VideoPatchwork
 class VideoPatchworkParams(SeamlessParams):
     """Parameters of the video patchwork."""
 
-    grid: int = Field(
+    grid: int = grid_field(
         64,
-        ge=LEAST_GRID,
-        le=1024,
-        title="Grid",
-        description="Pixels from one patch to the next, about. What is smaller than a patch is kept whole; the crop "
-        "must hold a patch with its soft edges, at sharpness 6 about 3½ grids a side.",
+        "What is smaller than a patch is kept whole; the crop must hold a patch with its soft edges, at sharpness 6 "
+        "about 3½ grids a side.",
     )
     interval: int = INTERVAL
     arrangement: Literal["fixed", "mosaic"] = Field(
@@ -65,8 +59,8 @@ class VideoPatchworkParams(SeamlessParams):
         "stands still goes on standing still; 'mosaic': patches end in time as they do in space, so that everything "
         "comes and goes.",
     )
-    sharpness: float = sharpness(6)
-    reach: Reach = reach("all")
+    sharpness: float = sharpness_field(6, advanced=True)
+    reach: Reach = reach_field("all")
 
 
 def check(sizes: Sequence[Size], resolved: Resolved[VideoPatchworkParams]) -> None:

@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
 
 from app.methods.announced import FILMS, SHOWN_CLIP, views
 from app.methods.context import Context
@@ -16,12 +15,9 @@ from app.methods.output.films import crop_film
 from app.methods.output.pictures import encode
 from app.methods.params import LoopParams, Resolved
 from app.methods.patchwork.limits import (
-    LEAST_GRID,
-    RESCALE,
     Reached,
     idle_reach,
     pattern_size,
-    reach,
     refuse_long_frames,
     refuse_long_search,
     refuse_other_size,
@@ -29,15 +25,14 @@ from app.methods.patchwork.limits import (
     search_bytes,
     summed,
 )
+from app.methods.patchwork.params import INTERVAL, RESCALE, candidates_field, grid_field, reach_field, sharpness_field
 from app.methods.patchwork.pictures import (
     IN_TIME,
-    INTERVAL,
     average_picture,
     cells_cube,
     compared_pattern,
     patchwork_bytes,
     refuse_short,
-    sharpness,
     textured,
 )
 from app.methods.stages import Plan
@@ -59,26 +54,17 @@ PEAK = 255  # of a clip's values
 class VideoTransferParams(LoopParams):
     """Parameters of the video transfer."""
 
-    grid: int = Field(
-        16,
-        ge=LEAST_GRID,
-        le=1024,
-        title="Grid",
-        description="Pixels from one patch to the next, about. Smaller patches follow the pattern more closely, larger "
-        "ones keep more of the clip's texture.",
+    grid: int = grid_field(
+        16, "Smaller patches follow the pattern more closely, larger ones keep more of the clip's texture."
     )
     interval: int = INTERVAL
-    candidates: int = Field(
-        200,
-        ge=0,
-        le=100_000,
-        title="Candidates",
-        description="Among how many places of the clip, drawn at random, the one that is most like the pattern is "
-        "taken for each patch; 0: among all. More follow the pattern more closely and repeat places more often.",
+    candidates: int = candidates_field(
+        "Among how many places of the clip, drawn at random, the one that is most like the pattern is taken for each "
+        "patch; 0: among all. More follow the pattern more closely and repeat places more often."
     )
     rescale: bool = RESCALE
-    sharpness: float = sharpness(2)
-    reach: Reach = reach("near")
+    sharpness: float = sharpness_field(2, advanced=True)
+    reach: Reach = reach_field("near")
 
 
 def check(sizes: Sequence[Size], resolved: Resolved[VideoTransferParams]) -> None:
