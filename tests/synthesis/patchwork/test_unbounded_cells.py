@@ -10,7 +10,6 @@ from app.synthesis.patchwork.patchwork import Patchwork, paint_cells, patchwork
 from app.synthesis.patchwork.transfer import transfer
 from app.synthesis.patchwork.transitions import Transitions
 from app.synthesis.patchwork.unbounded_cells import ENDS, cells_with_reach, radius
-from app.synthesis.patchwork.video_mosaic import VideoMosaic
 from app.synthesis.patchwork.video_patchwork import PaddedClip, VideoPatchwork
 from tests.synthesis.full_sums import cells_at, mirrored, patchwork_sum, transfer_sum
 from tests.synthesis.stopping import stops_at
@@ -227,48 +226,3 @@ def test_a_frame_of_a_video_transfer_is_equation_seven_with_every_cell(sharpness
     made = VideoPatchwork(PaddedClip(film, cells.margin(places, 90, 80)), cells, places, transitions)
     expected, _ = transfer_sum(film[0], near, places)
     assert deviation(made.frame(5), expected) < HALF_A_LEVEL
-
-
-@pytest.mark.parametrize("sharpness", SHARPNESSES)
-@pytest.mark.parametrize(("loop", "tileable"), [(True, True), (False, False)])
-def test_a_frame_of_a_mosaic_is_the_sum_over_every_point_of_space_and_time(sharpness, loop, tileable):
-    """The points are found where their cells, painted one by one, are alone."""
-    rng = np.random.default_rng(0)
-    film = np.stack([grain(60, 62, 1, seed=seed) for seed in range(30)]).round().astype(np.uint8)
-    shape, grid, interval = (18, 48, 50), 16, 6
-    made = VideoMosaic(
-        PaddedClip(film).planes,
-        shape,
-        grid=grid,
-        interval=interval,
-        sharpness=sharpness,
-        loop=loop,
-        tileable=tileable,
-        rng=rng,
-    )
-    rng = np.random.default_rng(0)
-    blocks = np.indices([-(-n // step) for n, step in zip(shape, (interval, grid, grid), strict=True)]).reshape(3, -1)
-    points = np.empty(blocks.shape, int)
-    for axis, (length, source, step, wraps) in enumerate(
-        zip(shape, film.shape, (interval, grid, grid), (loop, tileable, tileable), strict=False)
-    ):
-        count = -(-length // step)
-        points[axis] = rng.integers(blocks[axis] * length // count, (blocks[axis] + 1) * length // count)
-        most = [(length - 1) // 2, length // 2] if wraps else [points[axis], length - 1 - points[axis]]
-        before, after = (np.minimum(int(1.75 * step), np.broadcast_to(limit, points[axis].shape)) for limit in most)
-        assert (made.sources[:, axis] == rng.integers(before, source - after)).all()
-    number = 7
-    total, squares, mean = np.zeros(shape[1:]), np.zeros(shape[1:]), film.mean()
-    for point, source in zip(points.T, made.sources, strict=True):
-        away = [np.array([number]) - point[0], np.arange(shape[1]) - point[1], np.arange(shape[2]) - point[2]]
-        for axis, wraps in enumerate((loop, tileable, tileable)):
-            if wraps:
-                back = (shape[axis] - 1) // 2
-                away[axis] = (away[axis] + back) % shape[axis] - back
-        d = np.sqrt((away[0][0] * grid / interval) ** 2 + away[1][:, None] ** 2 + away[2] ** 2)
-        weight = np.maximum(d, 0.03) ** -sharpness
-        places = [mirrored(a + q, n) for a, q, n in zip(away, source, film.shape, strict=False)]
-        total += (film[np.ix_(*places)][0, :, :, 0] - mean) * weight
-        squares += weight**2
-    expected = total / np.sqrt(squares) + mean
-    assert deviation(made.frame(number)[:, :, 0], expected) < HALF_A_LEVEL

@@ -6,7 +6,8 @@ import pytest
 from app.synthesis.patchwork.cells import Window
 from app.synthesis.patchwork.video_mosaic import VideoMosaic, least_length
 from app.synthesis.patchwork.video_patchwork import PaddedClip
-from tests.synthesis.films import noise, size_of, steps, still, waves
+from tests.synthesis.patchwork.plain_mosaic import frame_of, points_of
+from tests.synthesis.videos import noise, size_of, steps, still, waves
 
 SIZE = 64
 
@@ -91,3 +92,23 @@ def test_cells_are_painted_alike_in_any_window():
     part = synthesis.paint(5, Window(20, 31, 40, SIZE), colours)
     np.testing.assert_allclose(whole[20:31, 40:], part, rtol=1e-4)
     assert whole.std() > 20
+
+
+@pytest.mark.parametrize(
+    ("sharpness", "reach"), [(1, "all"), (2, "all"), (4, "all"), (1, "near"), (2, "near"), (6, "all"), (20, "near")]
+)
+@pytest.mark.parametrize(("loop", "tileable"), [(True, True), (False, False), (True, False)])
+def test_a_frame_is_the_plain_sum_over_the_points_with_every_option(sharpness, reach, loop, tileable):
+    """Every point of space and time, or those with weights that end: for near points only, and from f = 6 on."""
+    film = noise(30, 60, 62, seed=2)
+    shape, grid, interval, wraps = (18, 48, 50), 16, 6, (loop, tileable, tileable)
+    made = VideoMosaic(
+        PaddedClip(film).planes, shape, grid=grid, interval=interval, sharpness=sharpness, loop=loop, tileable=tileable,
+        rng=np.random.default_rng(0), reach=reach,
+    )  # fmt: skip
+    points, sources = points_of(np.random.default_rng(0), shape, film.shape[:3], grid, interval, wraps)
+    assert (made.sources == sources).all()
+    options = {"grid": grid, "interval": interval, "sharpness": sharpness, "wraps": wraps}
+    for number in (0, 7):
+        expected = frame_of(film, shape, points, sources, number, ends=reach == "near" or sharpness >= 6, **options)
+        assert np.abs(made.frame(number)[:, :, 0] - expected).max() < 0.5

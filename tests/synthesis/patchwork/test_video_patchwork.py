@@ -9,8 +9,8 @@ from app.synthesis.patchwork.patchwork import Patchwork
 from app.synthesis.patchwork.transfer import transfer
 from app.synthesis.patchwork.transitions import Transitions
 from app.synthesis.patchwork.video_patchwork import PaddedClip, VideoPatchwork, frames_in_order
-from tests.synthesis.films import noise, size_of, steps, still, waves
 from tests.synthesis.stopping import StopError
+from tests.synthesis.videos import noise, size_of, steps, still, waves
 
 SIZE = 64
 

@@ -1,4 +1,4 @@
-"""Films to synthesise from, and what several tests measure of them."""
+"""Videos to synthesise from, and what several tests measure of them."""
 
 import numpy as np
 from scipy.ndimage import gaussian_filter
