@@ -151,7 +151,7 @@ def pages(site: Site, experiment: dict[str, Any]) -> dict[str, str]:
     site.run("gravel_gray", (96, 96, 256, 256))
     mixture = site.run("gravel_gray", (96, 96, 192, 192), "mix", "towel_red", "rockface_pink", seed=2)
     convergence = site.run("gravel_gray", (96, 96, 128, 128), "dsn", convergence=True, spot="disc")
-    films = site.run("sand_under_water", (40, 40, 96, 96), "video-rpn", frames=8)
+    videos = site.run("sand_under_water", (40, 40, 96, 96), "video-rpn", frames=8)
     return {
         "home": "/",
         "sample": "/samples/scene_china",
@@ -167,10 +167,10 @@ def pages(site: Site, experiment: dict[str, Any]) -> dict[str, str]:
         "tiled": f"/experiments/{experiment['id']}?view=tiled&tiles=3",
         "steps": f"/experiments/{experiment['id']}?view=steps",
         "compare": f"/compare/{experiment['id']}/{other['id']}",
-        "films": f"/experiments/{films['id']}",
-        "films-tiled": f"/experiments/{films['id']}?view=tiled",
+        "videos": f"/experiments/{videos['id']}",
+        "videos-tiled": f"/experiments/{videos['id']}?view=tiled",
         "methods": "/methods",
-        "method-of-films": "/methods/video-rpn",
+        "method-of-videos": "/methods/video-rpn",
         "archive": "/archive",
         "nothing": "/nothing-here",
     }
@@ -228,7 +228,7 @@ def visitors(browser: Browser, site: Site) -> Iterator[Visitors]:
 
 
 def shown_pixels(page: Page, selector: str) -> np.ndarray:
-    """The pixels (H, W, 3) uint8 of a picture, film or canvas as the browser shows it."""
+    """The pixels (H, W, 3) uint8 of a picture, video or canvas as the browser shows it."""
     page.wait_for_function(
         """selector => {
             const shown = document.querySelector(selector);

@@ -16,7 +16,7 @@ ALIKE = {
     "convergence",
     "slider",
     "tiled",
-    "films-tiled",
+    "videos-tiled",
 }  # no colours of their own
 PHONE = {"viewport": {"width": 390, "height": 844}, "has_touch": True, "is_mobile": True}
 

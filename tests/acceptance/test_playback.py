@@ -1,4 +1,4 @@
-"""Chromium plays the films as they are written: WebM shows the very pixels, MP4 close ones; no server is needed."""
+"""Chromium plays the videos as they are written: WebM shows the very pixels, MP4 close ones; no server is needed."""
 
 import base64
 from io import BytesIO
@@ -43,8 +43,8 @@ PLAY = """async ([data, type]) => {
 }"""
 
 
-def played(browser: Any, film: np.ndarray, kind: Kind, path: Path, rate: float) -> dict[str, Any]:
-    write_video(iter(film), path, kind, count=len(film), rate=rate)
+def played(browser: Any, video: np.ndarray, kind: Kind, path: Path, rate: float) -> dict[str, Any]:
+    write_video(iter(video), path, kind, count=len(video), rate=rate)
     page = browser.new_page()
     try:
         data = base64.b64encode(path.read_bytes()).decode()
@@ -59,12 +59,12 @@ def played(browser: Any, film: np.ndarray, kind: Kind, path: Path, rate: float) 
 @pytest.mark.parametrize(
     ("height", "width", "channels", "rate"), [(96, 128, 3, 24.0), (61, 83, 3, 24000 / 1001), (61, 83, 1, 100 / 7)]
 )
-def test_a_film_is_drawn_as_it_was_and_plays_to_its_end(
+def test_a_video_is_drawn_as_it_was_and_plays_to_its_end(
     browser: Any, tmp_path: Path, kind: Kind, height: int, width: int, channels: int, rate: float
 ) -> None:
-    film = natural_film(12, height, width, channels)
-    found = played(browser, film, kind, tmp_path / "film", rate)
-    frame = np.broadcast_to(film[0], (height, width, 3))
+    video = natural_film(12, height, width, channels)
+    found = played(browser, video, kind, tmp_path / "video", rate)
+    frame = np.broadcast_to(video[0], (height, width, 3))
     if kind == "webm":
         assert (found["drawn"] == frame).all()
     else:

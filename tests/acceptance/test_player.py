@@ -1,4 +1,4 @@
-"""Films on an experiment's page: Chromium plays both files, in step, frame by frame, tiled, and without a script."""
+"""Videos on an experiment's page: Chromium plays both files, in step, frame by frame, tiled, and without a script."""
 
 from collections.abc import Callable
 from io import BytesIO
@@ -21,7 +21,7 @@ NOISE = 1.0  # mean difference of values that colour conversion may make
 
 
 @pytest.fixture(scope="session")
-def films(site: Any) -> dict[str, Any]:
+def videos(site: Any) -> dict[str, Any]:
     """The record of a finished video whose texture has more frames than its crop."""
     body = {
         "method": "video-rpn",
@@ -47,23 +47,23 @@ def difference(one: np.ndarray, other: np.ndarray) -> float:
 
 
 @pytest.fixture(scope="session")
-def arrays(site: Any, films: dict[str, Any], tmp_path_factory: pytest.TempPathFactory) -> dict[str, np.ndarray]:
+def arrays(site: Any, videos: dict[str, Any], tmp_path_factory: pytest.TempPathFactory) -> dict[str, np.ndarray]:
     """Name → the frames (T, H, W, 3) of its lossless file, as another decoder than the browser's finds them."""
     found = {}
     for name in FRAMES:
-        path: Path = tmp_path_factory.mktemp("films") / name
-        path.write_bytes(site.client.get(f"/api/v1/experiments/{films['id']}/outputs/{name}").content)
+        path: Path = tmp_path_factory.mktemp("videos") / name
+        path.write_bytes(site.client.get(f"/api/v1/experiments/{videos['id']}/outputs/{name}").content)
         found[name] = np.stack(list(read_video(path)))
         assert min(map(difference, found[name], np.roll(found[name], 1, axis=0))) > 2 * NOISE  # none is like the next
     return found
 
 
-def address(films: dict[str, Any], query: str = "") -> str:
-    return f"/experiments/{films['id']}{query}"
+def address(videos: dict[str, Any], query: str = "") -> str:
+    return f"/experiments/{videos['id']}{query}"
 
 
 def opened(visitors: Any, path: str, **options: Any) -> Page:
-    """A page whose films are loaded."""
+    """A page whose videos are loaded."""
     page: Page = visitors.visit(path, **options)
     expect(page.locator(".player")).to_be_visible()
     page.wait_for_function(f"() => {VIDEOS}.every(video => video.readyState === 4)")
@@ -95,7 +95,7 @@ def shows(until: Callable[..., Any], shown_pixels: Callable[[Page, str], np.ndar
 
 @pytest.fixture(scope="session")
 def in_step(shows: Shows, arrays: dict[str, np.ndarray]) -> Callable[[Page, int], None]:
-    """Wait until both films show the frame of a position, each counted round its own length."""
+    """Wait until both videos show the frame of a position, each counted round its own length."""
 
     def wait(page: Page, position: int) -> None:
         for place, name in enumerate(("crop", "texture"), 1):
@@ -104,15 +104,15 @@ def in_step(shows: Shows, arrays: dict[str, np.ndarray]) -> Callable[[Page, int]
     return wait
 
 
-def test_both_films_play_in_step(visitors: Any, films: dict[str, Any], screenshot: Callable[..., None]) -> None:
+def test_both_videos_play_in_step(visitors: Any, videos: dict[str, Any], screenshot: Callable[..., None]) -> None:
     """Their positions stay within two frames of each other half of the time, however busy the machine is."""
-    page = still(visitors, address(films))  # its begin is seen, so that rounds can be counted
+    page = still(visitors, address(videos))  # its begin is seen, so that rounds can be counted
     apart = page.evaluate(
         """({ rate, frames }) => new Promise(done => {
-            const films = [...document.querySelectorAll(".stage video")];
+            const videos = [...document.querySelectorAll(".stage video")];
             const last = [0, 0], laps = [0, 0], found = [];
             const look = () => {
-                const positions = films.map((video, index) => {
+                const positions = videos.map((video, index) => {
                     if (video.currentTime < last[index] - frames[index] / rate / 2) laps[index] += 1;
                     last[index] = video.currentTime;
                     return laps[index] * frames[index] + video.currentTime * rate;
@@ -128,12 +128,12 @@ def test_both_films_play_in_step(visitors: Any, films: dict[str, Any], screensho
     )
     assert np.median(apart) < 2
     page.wait_for_function(f"() => {PLAYING}")
-    screenshot(page, "experiment-film", full_page=False)
+    screenshot(page, "experiment-video", full_page=False)
 
 
-def test_a_video_that_has_run_ahead_waits_for_the_other(visitors: Any, films: dict[str, Any]) -> None:
+def test_a_video_that_has_run_ahead_waits_for_the_other(visitors: Any, videos: dict[str, Any]) -> None:
     """Ten frames ahead it stands still, then plays slowly, and at last as fast as the other one."""
-    page = still(visitors, address(films))
+    page = still(visitors, address(videos))
     speeds = page.evaluate(
         """rate => new Promise(done => {
             const [behind, ahead] = document.querySelectorAll(".stage video");
@@ -158,9 +158,9 @@ def test_a_video_that_has_run_ahead_waits_for_the_other(visitors: Any, films: di
 
 
 @pytest.mark.parametrize("name", ["texture", "texture-mp4", "crop", "crop-mp4"])
-def test_chromium_plays_every_file(visitors: Any, films: dict[str, Any], name: str) -> None:
+def test_chromium_plays_every_file(visitors: Any, videos: dict[str, Any], name: str) -> None:
     """It shows frames of the right size, and comes round to the beginning again."""
-    page = still(visitors, address(films))
+    page = still(visitors, address(videos))
     size = page.evaluate(
         """async source => {
             const video = Object.assign(document.createElement("video"), { muted: true, loop: true, src: source });
@@ -174,13 +174,13 @@ def test_chromium_plays_every_file(visitors: Any, films: dict[str, Any], name: s
             await looped;
             return [video.videoWidth, video.videoHeight];
         }""",
-        f"/api/v1/experiments/{films['id']}/outputs/{name}",
+        f"/api/v1/experiments/{videos['id']}/outputs/{name}",
     )
     assert size == ([112, 80] if name.startswith("texture") else [96, 80])
 
 
-def test_who_asked_for_reduced_motion_starts_it_by_hand(visitors: Any, films: dict[str, Any]) -> None:
-    page = still(visitors, address(films))
+def test_who_asked_for_reduced_motion_starts_it_by_hand(visitors: Any, videos: dict[str, Any]) -> None:
+    page = still(visitors, address(videos))
     expect(page.locator(".player output")).to_have_text("1 / 20")
     assert page.evaluate("[...document.querySelectorAll('video')].every(video => video.paused && !video.autoplay)")
     page.get_by_role("button", name="Play").click()
@@ -194,10 +194,10 @@ def test_who_asked_for_reduced_motion_starts_it_by_hand(visitors: Any, films: di
 
 
 def test_steps_show_one_frame_after_the_other(
-    visitors: Any, films: dict[str, Any], in_step: Callable[[Page, int], None]
+    visitors: Any, videos: dict[str, Any], in_step: Callable[[Page, int], None]
 ) -> None:
-    """Frame for frame what another decoder finds in the files; each film goes on round its own length."""
-    page = still(visitors, address(films))
+    """Frame for frame what another decoder finds in the files; each video goes on round its own length."""
+    page = still(visitors, address(videos))
     following, previous = (page.get_by_role("button", name=name) for name in ("Next frame", "Previous frame"))
     following.click()
     in_step(page, 1)
@@ -212,10 +212,10 @@ def test_steps_show_one_frame_after_the_other(
 
 
 def test_the_player_works_by_keys_alone(
-    visitors: Any, films: dict[str, Any], in_step: Callable[[Page, int], None]
+    visitors: Any, videos: dict[str, Any], in_step: Callable[[Page, int], None]
 ) -> None:
     """Space, comma and full stop on the pictures, whose arrows still pan; arrows on the slider of frames."""
-    page = still(visitors, address(films))
+    page = still(visitors, address(videos))
     panes, output = page.get_by_role("group", name="Pictures."), page.locator(".player output")
     expect(panes).to_have_accessible_name(
         "Pictures. Arrow keys move the pictures, plus and minus zoom, 0 fits them, "
@@ -241,13 +241,13 @@ def test_the_player_works_by_keys_alone(
 
 def test_the_tiled_view_repeats_what_plays(
     visitors: Any,
-    films: dict[str, Any],
+    videos: dict[str, Any],
     arrays: dict[str, np.ndarray],
     shows: Shows,
     screenshot: Callable[..., None],
 ) -> None:
     """Nine times the frame, pixel beside pixel, and the next one after a step."""
-    page = still(visitors, address(films, "?view=tiled"))
+    page = still(visitors, address(videos, "?view=tiled"))
     page.get_by_role("button", name="3 × 3").click()
     page.get_by_role("button", name="1 : 1").click()
     tile = ".pane:nth-child(2) .tile"
@@ -257,11 +257,11 @@ def test_the_tiled_view_repeats_what_plays(
         page.get_by_role("button", name="Next frame").click()
     page.get_by_role("button", name="Play").click()
     page.wait_for_function(f"() => {PLAYING}")
-    screenshot(page, "experiment-film-tiled", full_page=False)
+    screenshot(page, "experiment-video-tiled", full_page=False)
 
 
-def test_a_film_that_comes_late_is_repeated_too(
-    visitors: Any, films: dict[str, Any], arrays: dict[str, np.ndarray], shows: Shows
+def test_a_video_that_comes_late_is_repeated_too(
+    visitors: Any, videos: dict[str, Any], arrays: dict[str, np.ndarray], shows: Shows
 ) -> None:
     """Though it stands still, and nothing but its coming says that there is something to show."""
     page = visitors.visit("/", reduced_motion="reduce")
@@ -271,7 +271,7 @@ def test_a_film_that_comes_late_is_repeated_too(
         held.append(route)
 
     page.route("**/outputs/texture", hold)
-    page.goto(address(films, "?view=tiled"), wait_until="domcontentloaded")
+    page.goto(address(videos, "?view=tiled"), wait_until="domcontentloaded")
     expect(page.locator(".viewer.live")).to_be_visible()
     page.get_by_role("button", name="1 : 1").click()
     page.unroute("**/outputs/texture", hold)
@@ -281,9 +281,9 @@ def test_a_film_that_comes_late_is_repeated_too(
 
 
 @pytest.mark.parametrize("view", ["Flip", "Slider"])
-def test_films_play_on_upon_each_other(visitors: Any, films: dict[str, Any], view: str) -> None:
+def test_videos_play_on_upon_each_other(visitors: Any, videos: dict[str, Any], view: str) -> None:
     """They have begun without being asked to."""
-    page = opened(visitors, address(films))
+    page = opened(visitors, address(videos))
     page.get_by_role("link", name=view).click()
     expect(page.locator(".over .stage video")).to_have_count(2)
     before = page.evaluate(f"{VIDEOS}.map(video => video.currentTime)")
@@ -291,8 +291,8 @@ def test_films_play_on_upon_each_other(visitors: Any, films: dict[str, Any], vie
     page.wait_for_function(f"() => {PLAYING}")
 
 
-def test_what_is_not_seen_stands_still_until_it_is(visitors: Any, films: dict[str, Any]) -> None:
-    page = opened(visitors, address(films))
+def test_what_is_not_seen_stands_still_until_it_is(visitors: Any, videos: dict[str, Any]) -> None:
+    page = opened(visitors, address(videos))
     page.wait_for_function(f"() => {PLAYING}")
     page.get_by_role("link", name="Steps").click()
     page.wait_for_function(f"() => {PAUSED}")
@@ -300,17 +300,17 @@ def test_what_is_not_seen_stands_still_until_it_is(visitors: Any, films: dict[st
     page.wait_for_function(f"() => {PLAYING}")
 
 
-def test_without_a_script_every_film_has_its_own_controls(visitors: Any, films: dict[str, Any]) -> None:
-    page = visitors.visit(address(films), java_script_enabled=False)
+def test_without_a_script_every_video_has_its_own_controls(visitors: Any, videos: dict[str, Any]) -> None:
+    page = visitors.visit(address(videos), java_script_enabled=False)
     expect(page.locator(".player")).to_be_hidden()
-    videos = page.locator(".stage video")
-    expect(videos).to_have_count(2)
+    shown = page.locator(".stage video")
+    expect(shown).to_have_count(2)
     for index, name in enumerate(("crop", "texture")):
         for attribute in ("controls", "muted", "loop", "playsinline"):
-            expect(videos.nth(index)).to_have_attribute(attribute, "")
-        kinds = videos.nth(index).locator("source").evaluate_all("sources => sources.map(source => source.type)")
+            expect(shown.nth(index)).to_have_attribute(attribute, "")
+        kinds = shown.nth(index).locator("source").evaluate_all("sources => sources.map(source => source.type)")
         assert kinds == ["video/webm", "video/mp4"]
-        poster = page.request.get(videos.nth(index).get_attribute("poster"))
+        poster = page.request.get(shown.nth(index).get_attribute("poster"))
         assert Image.open(BytesIO(poster.body())).size == ((96, 80) if name == "crop" else (112, 80))
     page.get_by_role("link", name="Tiled", exact=True).click()
     expect(page.locator(".pane img")).to_have_count(8)
@@ -319,12 +319,12 @@ def test_without_a_script_every_film_has_its_own_controls(visitors: Any, films: 
     expect(page.locator(".steps img").first).to_have_attribute("alt", "Video cube of the crop")
 
 
-def test_a_film_that_cannot_be_played_is_said_to_be_so_and_keeps_no_other_waiting(
-    visitors: Any, films: dict[str, Any]
+def test_a_video_that_cannot_be_played_is_said_to_be_so_and_keeps_no_other_waiting(
+    visitors: Any, videos: dict[str, Any]
 ) -> None:
     visitors.refusals_expected = True
     page = visitors.visit("/")
     page.route("**/outputs/crop*", lambda route: route.fulfill(status=404))
-    page.goto(address(films))
+    page.goto(address(videos))
     expect(page.get_by_text("cannot play")).to_be_visible()
     page.wait_for_function("() => document.querySelector('.pane:nth-child(2) video').currentTime > 0.1")

@@ -19,7 +19,7 @@ from app.methods.registry import METHODS
 QUICK = {"candidates": 20, "grid": 16, "interval": 4, "iterations": 2, "frames": 6}
 CROP = "8,16,96,88"
 RANGE = "2,8"
-NOISE = 1.0  # mean difference of values that a film's colour conversion may make
+NOISE = 1.0  # mean difference of values that a video's colour conversion may make
 PICTURE = ":is(img, video)"
 VIDEOS = "[...document.querySelectorAll('.stage video')]"
 
@@ -84,7 +84,7 @@ def assert_views(page: Page) -> None:
 
 
 def assert_plays(page: Page, frames: np.ndarray, shown_pixels: Shown, until: Callable[..., Any]) -> None:
-    """All films run, stand when they are told to, and step by one frame, which is the file's; (T, H, W, 3)."""
+    """All videos run, stand when they are told to, and step by one frame, which is the file's; (T, H, W, 3)."""
     page.wait_for_function(f"() => {VIDEOS}.every(video => !video.paused && video.readyState > 1)")
     before = page.evaluate(f"{VIDEOS}.map(video => video.currentTime)")
     page.wait_for_function(f"before => {VIDEOS}.every((video, at) => video.currentTime !== before[at])", arg=before)

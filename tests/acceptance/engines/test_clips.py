@@ -1,4 +1,4 @@
-"""The whole way of a clip in Chromium, Firefox and WebKit: a range of its time, a run, and films that play and step."""
+"""The whole way of a clip in Chromium, Firefox and WebKit: a range of its time, a run, and videos that play."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -13,11 +13,11 @@ from tests.acceptance.engines.walk import CROP, TEXTURE, crop_of, on_sample, run
 from tests.acceptance.engines.window import PATIENCE, Window, difference
 from tests.acceptance.waiting import until
 
-# Slow, so that what is looked at lies within one round of a film: in WebKitGTK 2.50 one of two films that go round over
+# Slow, so that what is looked at lies within one round of a video: in WebKitGTK 2.50 one of two that go round over
 # HTTP stands still after some rounds, with or without a script that paces them.
 FRAMES, RATE = 72, 3  # of the clip
 FIRST, COUNT = 12, 36  # of the range that is taken
-NOISE = 2.0  # levels that engines may differ by in the colours of a film without loss
+NOISE = 2.0  # levels that engines may differ by in the colours of a video without loss
 
 
 def test_the_whole_way_of_a_clip(
@@ -31,17 +31,17 @@ def test_the_whole_way_of_a_clip(
     window.has("#run-size", f"{width} × {height} pixels, {COUNT} frames")
     path = run(window, window.click, busy)
     assert "Running" in [status for status, _ in window.look("() => window.said")]
-    films = {}
+    videos = {}
     for name in ("crop", "texture"):
         file = tmp_path / name
         file.write_bytes(site.client.get(f"/api/v1{path}/outputs/{name}").content)
-        films[name] = np.stack(list(read_video(file)))
-        assert films[name].shape == (COUNT, height, width, 3)
-    assert_result(window, films)
+        videos[name] = np.stack(list(read_video(file)))
+        assert videos[name].shape == (COUNT, height, width, 3)
+    assert_result(window, videos)
     window.open(path)
-    assert_result(window, films)
+    assert_result(window, videos)
     kept = window.download(lambda: window.click(".downloads a", "WebM"))
-    assert np.array_equal(np.stack(list(read_video(kept))), films["texture"])
+    assert np.array_equal(np.stack(list(read_video(kept))), videos["texture"])
 
 
 @pytest.fixture(scope="module")
@@ -81,12 +81,12 @@ def take_range(window: Window) -> None:
     window.has("#crop .reel output", f"{FIRST}–{FIRST + COUNT - 1} of {FRAMES} frames")
 
 
-def assert_result(window: Window, films: dict[str, np.ndarray]) -> None:
-    """Both films play by themselves, stop where they are told to, and show one frame after the other."""
+def assert_result(window: Window, videos: dict[str, np.ndarray]) -> None:
+    """Both videos play by themselves, stop where they are told to, and show one frame after the other."""
     window.has("h1", "Video RPN")
     window.has(".player")
-    for film in (CROP, TEXTURE):
-        plays(window, film)
+    for video in (CROP, TEXTURE):
+        plays(window, video)
     window.lacks(".unplayable")
     window.click("[data-play]", "Pause")
     window.until(
@@ -102,6 +102,6 @@ def assert_result(window: Window, films: dict[str, np.ndarray]) -> None:
         assert int(count) == COUNT
         if step:
             assert (int(number) - int(before.split(" / ")[0]) - step) % COUNT == 0
-        for selector, frames in zip((CROP, TEXTURE), films.values(), strict=True):
+        for selector, frames in zip((CROP, TEXTURE), videos.values(), strict=True):
             window.shows(selector, frames[int(number) - 1], NOISE)
             assert difference(window.decoded(selector), frames[int(number) - 1]) < NOISE

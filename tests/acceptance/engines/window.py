@@ -194,7 +194,7 @@ class Window(ABC):
         return x, y, width, height
 
     def decoded(self, selector: str) -> np.ndarray:
-        """The pixels (H, W, 3) uint8 of a picture, film or canvas, as the browser decoded them."""
+        """The pixels (H, W, 3) uint8 of a picture, video or canvas, as the browser decoded them."""
         return pixels(b64decode(self.until(DECODED, selector)))
 
     def seen(self, selector: str) -> np.ndarray:
