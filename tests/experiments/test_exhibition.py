@@ -104,7 +104,7 @@ def test_the_service_makes_what_is_missing_in_the_background(
 ) -> None:
     service = make_service(settings.model_copy(update={"catalogue": True}))
     service.start()
-    moments, deadline = threading.Event(), 400
+    moments, deadline = threading.Event(), 1200
     while deadline and not ((found := service.exhibition.find(PLASTER)) and found.status.finished):
         moments.wait(0.05)
         deadline -= 1

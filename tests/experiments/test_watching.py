@@ -240,7 +240,7 @@ def test_who_gives_up_while_the_job_moves_stops_waiting(turns: int) -> None:
         for _ in range(turns):
             await asyncio.sleep(0)
         waiting.cancel()
-        await asyncio.wait({waiting}, timeout=0.5)
+        await asyncio.wait({waiting}, timeout=20)
         gone = waiting.cancelled()
         waiting.cancel()
         return gone

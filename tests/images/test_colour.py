@@ -74,6 +74,49 @@ def test_a_wide_profile_is_converted_as_the_exact_transform_does(read: Read, noi
     assert abs(picture.pixels.astype(int) - exact).max() <= 8
 
 
+def table_profile(lightness: Callable[[int, int, int], int]) -> bytes:
+    """Make an ICC profile that is no matrix and curves: a table from RGB to Lab with two points an axis.
+
+    ``lightness`` is L* (255 is 100) at each corner of the cube, by red, green and blue, each 0 or 1; a* and b* are 0.
+    """
+    ramp = bytes(range(256))
+    grid = b"".join(bytes([lightness(*corner), 128, 128]) for corner in product((0, 1), repeat=3))
+    identity = b"".join(struct.pack(">i", 65536 * (i % 4 == 0)) for i in range(9))
+    table = b"mft1" + bytes(4) + bytes([3, 3, 2, 0]) + identity + ramp * 3 + grid + ramp * 3
+    table += bytes(-len(table) % 4)
+    white = b"XYZ " + bytes(4) + struct.pack(">iii", 63190, 65536, 54061)
+    start = 128 + 4 + 2 * 12
+    tags = struct.pack(">I4sII4sII", 2, b"A2B0", start, len(table), b"wtpt", start + len(table), len(white))
+    header = struct.pack(">II", start + len(table) + len(white), 0) + b"\x02\x10\0\0" + b"mntrRGB Lab " + bytes(12)
+    header += b"acsp" + bytes(28) + struct.pack(">iii", 63190, 65536, 54061) + bytes(48)
+    return header + tags + table + white
+
+
+def srgb_of_lightness(lightness: NDArray[Any]) -> NDArray[np.float64]:
+    """CIE 1976: the luminance of L* from 0 to 100, as a grey of sRGB."""
+    light = np.where(lightness > 8, ((lightness + 16) / 116) ** 3, lightness / 903.2963)
+    return srgb_of_linear(light)
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
+@pytest.mark.parametrize("extreme", [max, min])
+def test_a_profile_that_is_no_matrix_and_curves_is_converted_exactly(
+    read: Read, noise: Noise, dtype: type, extreme: Callable[..., Any]
+) -> None:
+    """L* is the largest, or the smallest, of the three channels.
+
+    Between the corners colour management interpolates in tetrahedra, in which both are linear: the formula is exact.
+    They are no sum of what the channels give alone.
+    """
+    pixels = noise(60, 80, 3, dtype=dtype)
+    pixels[0, :4] = np.array([[0, 0, 0], [1, 1, 1], [1, 0, 0], [1, 1, 0]]) * np.iinfo(dtype).max
+    profile = table_profile(lambda *corner: 255 * extreme(corner))
+    picture = read(as_tiff(pixels, photometric="rgb", iccprofile=profile)).pixels
+    peak = np.iinfo(dtype).max
+    expected = srgb_of_lightness((pixels.max(2) if extreme is max else pixels.min(2)) / peak * 100) * peak
+    assert abs(picture - expected[..., None]).max() <= (0.6 if dtype == np.uint8 else 2)  # a rounding, or two
+
+
 def test_a_profile_of_srgb_changes_nothing(read: Read, noise: Noise) -> None:
     pixels = noise(32, 32, 3)
     data = saved(Image.fromarray(pixels), "png", icc_profile=imagecodecs.cms_profile("srgb"))

@@ -16,7 +16,16 @@ from numpy.typing import NDArray
 from PIL import Image, ImageCms
 
 from app.errors import InvalidInputError
-from app.images.convert import Format, convert, make_link_preview, make_rendition, make_thumbnails
+from app.images.convert import (
+    GROUND,
+    Format,
+    convert,
+    flatten,
+    make_link_preview,
+    make_rendition,
+    make_thumbnails,
+    read_depth,
+)
 from app.images.decode import Limits, decode
 from app.images.png_writer import encode_png
 
@@ -56,13 +65,69 @@ def test_jpeg_keeps_colour_at_full_resolution(texture: NDArray[np.uint8]) -> Non
     assert [component[1:3] for component in layer] == [(1, 1)] * 3
 
 
+def smooth(channels: int, dtype: type) -> NDArray[Any]:
+    """A picture that lossy formats keep well, (60, 80, C); its alpha, if it has one, goes from 0 to full."""
+    y, x = np.mgrid[0:60, 0:80]
+    colours = np.stack([40 + 2 * x, 220 - x - y, 60 + 2 * y], axis=-1)[..., : 1 if channels < 3 else 3]
+    alpha = np.clip(x * 255 // 60, 0, 255)
+    picture = colours if channels % 2 else np.dstack([colours, alpha])
+    return (picture * 257).astype(np.uint16) if dtype == np.uint16 else picture.astype(np.uint8)
+
+
+def on_grey(picture: NDArray[Any]) -> NDArray[np.float64]:
+    """What is seen of 8 bits with alpha on mid-grey, (H, W, 1 or 3)."""
+    if picture.ndim == 2 or picture.shape[2] in (1, 3):
+        return picture.reshape(*picture.shape[:2], -1).astype(float)
+    alpha = picture[..., -1:] / 255
+    return np.asarray(picture[..., :-1] * alpha + GROUND * (1 - alpha))
+
+
 @pytest.mark.parametrize("file_format", get_args(Format))
 @pytest.mark.parametrize("channels", [1, 2, 3, 4])
-def test_every_kind_of_picture_converts(noise: Noise, file_format: Format, channels: int) -> None:
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
+def test_every_kind_of_picture_converts(file_format: Format, channels: int, dtype: type) -> None:
+    """PNG and TIFF keep every number; what is seen of the others is within a few levels."""
+    picture = smooth(channels, dtype)
+    data = convert(encode_png(picture), file_format)[0]
+    if file_format in ("png", "tiff"):
+        decoded = tifffile.imread(io.BytesIO(data)) if file_format == "tiff" else imagecodecs.png_decode(data)
+        assert decoded.dtype == dtype
+        np.testing.assert_array_equal(decoded.reshape(picture.shape), picture)
+        return
+    image = opened(data)
+    transparent, grey = channels % 2 == 0, channels < 3
+    mode = ("L" if grey else "RGB") if file_format == "jpeg" else ("RGBA" if transparent else "RGB")
+    assert image.mode == ("RGB" if file_format == "jpeg" and transparent else mode)
+    seen = on_grey(np.asarray(image))
+    expected = np.broadcast_to(on_grey(smooth(channels, np.uint8)), (*seen.shape[:2], 1 if grey else 3))
+    difference = abs(seen - expected)
+    assert difference.mean() < 2
+    assert difference.max() < 12
+
+
+@pytest.mark.parametrize("channels", [1, 2, 3, 4])
+def test_flattening_lays_what_is_transparent_on_mid_grey(channels: int) -> None:
+    picture = smooth(channels, np.uint8)
+    flat = flatten(picture)
+    assert flat.dtype == np.uint8
+    assert flat.shape == (60, 80, 1 if channels < 3 else 3)
+    assert abs(flat - on_grey(picture)).max() <= 1
+
+
+@pytest.mark.parametrize(("channels", "longest"), [(2, None), (4, None), (1, None), (3, None), (4, 40)])
+def test_a_rendition_shows_every_pixel(tmp_path: Path, channels: int, longest: int | None) -> None:
+    """Exactly, where it is transparent and its size is kept; else within what JPEG and a reduced size allow."""
     for dtype in (np.uint8, np.uint16):
-        data = convert(encode_png(noise(30, 40, channels, dtype=dtype)), file_format)[0]
-        decoded = tifffile.imread(io.BytesIO(data)) if file_format == "tiff" else np.asarray(opened(data))
-        assert decoded.shape[:2] == (30, 40)
+        (tmp_path / "picture.png").write_bytes(encode_png(smooth(channels, dtype)))
+        shown = np.asarray(opened(make_rendition(tmp_path / "picture.png", longest)[0]))
+        expected = smooth(channels, np.uint8)
+        if longest is not None:
+            assert shown.shape == (30, 40, 4)
+            assert abs(on_grey(shown)[8:-8, 8:-8] - on_grey(expected[::2, ::2])[8:-8, 8:-8]).max() < 8
+        elif channels in (2, 4):
+            np.testing.assert_array_equal(shown, expected)
+        else:
+            assert abs(shown.reshape(expected.shape).astype(int) - expected).max() < 12
 
 
 @pytest.mark.parametrize("channels", [1, 2, 3, 4])
@@ -154,6 +219,42 @@ def test_no_byte_of_metadata_comes_out(tmp_path: Path) -> None:
     assert b"48.8584" not in make_rendition(tmp_path / "picture.png", 128)[0]
     for file_format in ("jpeg", "webp", "tiff"):
         assert b"48.8584" not in convert(tmp_path / "picture.png", file_format)[0]
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
+def test_the_depth_of_a_file_is_read(tmp_path: Path, dtype: type) -> None:
+    (tmp_path / "picture.png").write_bytes(encode_png(smooth(3, dtype)))
+    assert read_depth(tmp_path / "picture.png") == np.dtype(dtype).itemsize * 8
+
+
+@pytest.mark.parametrize("file_format", get_args(Format))
+def test_a_file_and_its_bytes_convert_alike(tmp_path: Path, file_format: Format) -> None:
+    data = encode_png(smooth(4, np.uint16))
+    (tmp_path / "picture.png").write_bytes(data)
+    assert convert(tmp_path / "picture.png", file_format) == convert(data, file_format)
+    if file_format == "png":
+        assert convert(data, "png", 16)[0] is data  # nothing to do: not one byte changes
+
+
+@pytest.mark.parametrize(("file_format", "side"), [("webp", 16_383), ("jpeg", 65_500)])
+def test_the_longest_side_that_a_format_holds_is_written(file_format: Format, side: int) -> None:
+    assert opened(convert(encode_png(np.zeros((1, side), np.uint8)), file_format)[0]).size == (side, 1)
+    assert opened(convert(encode_png(np.zeros((side, 1), np.uint8)), file_format)[0]).size == (1, side)
+
+
+def test_a_rendition_that_is_too_long_for_jpeg_is_a_png(tmp_path: Path) -> None:
+    for side, media_type in ((65_500, "image/jpeg"), (65_501, "image/png")):
+        (tmp_path / "picture.png").write_bytes(encode_png(np.zeros((side, 1), np.uint8)))
+        assert make_rendition(tmp_path / "picture.png", None)[1] == media_type
+
+
+def test_small_pictures_are_enlarged_four_times_in_a_link_preview_and_stand_in_the_middle() -> None:
+    white, black = np.full((50, 40), 255, np.uint8), np.zeros((20, 60), np.uint8)
+    grey = np.asarray(Image.open(io.BytesIO(make_link_preview(white, black))).convert("L")).astype(int)
+    for place, top, left, height, width in ((grey > 192, 215, 385, 200, 160), (grey < 64, 275, 575, 80, 240)):
+        found = np.argwhere(place)
+        assert abs(found.min(0) - (top, left)).max() <= 1  # a margin of 30 between them
+        assert abs(found.max(0) - (top + height - 1, left + width - 1)).max() <= 1
 
 
 def test_thumbnails_have_one_scale(noise: Noise) -> None:

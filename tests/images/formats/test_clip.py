@@ -66,7 +66,7 @@ def test_as_many_pixels_as_allowed_are_read_and_one_more_is_not(read: Read, data
 
 def test_a_frame_has_no_more_pixels_than_a_picture_may(read: Read, data: bytes) -> None:
     assert read(data, pixels=HEIGHT * WIDTH).frames == FRAMES
-    with pytest.raises((TooLargeError, BrokenFileError)):
+    with pytest.raises((TooLargeError, BrokenFileError), match=r"32 pixels \(0\.0 megapixels\)|This video is damaged"):
         read(data, pixels=HEIGHT * WIDTH - 1)
 
 
@@ -88,7 +88,7 @@ def test_an_mp4_that_says_it_is_shorter_than_it_is_is_found_out(read: Read) -> N
         place = data.index(name) + at
         data[place : place + 4] = struct.pack(">I", 1)
     for limits in ({"video_frames": FRAMES - 1}, {"video_pixels": 48 * 64 * (FRAMES - 1)}):
-        with pytest.raises((TooLargeError, BrokenFileError)):
+        with pytest.raises(TooLargeError, match="rim it to its first 11 frames"):
             read(bytes(data), **limits)
 
 

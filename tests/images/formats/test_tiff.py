@@ -156,5 +156,130 @@ def test_a_header_that_promises_more_rows_is_refused(
     data = tiff(noise(40, 50, 3), rowsperstrip=10, **layout)
     with tifffile.TiffFile(io.BytesIO(data)) as file:
         at = file.pages.first.tags["ImageLength"].valueoffset
-    with pytest.raises(BrokenFileError):
+    with pytest.raises(BrokenFileError, match="This TIFF file is damaged"):
         read(data[:at] + height.to_bytes(2, "little") + data[at + 2 :])
+
+
+def patched(data: bytes, tag: str, value: int, index: int = 0) -> bytes:
+    """A TIFF file in which one number of a tag is another."""
+    with tifffile.TiffFile(io.BytesIO(data)) as file:
+        entry = file.pages.first.tags[tag]
+        size = {3: 2, 4: 4, 16: 8}[int(entry.dtype)]
+        at = entry.valueoffset + index * size
+    return data[:at] + value.to_bytes(size, "little") + data[at + size :]
+
+
+def numbers(data: bytes, tag: str) -> list[int]:
+    with tifffile.TiffFile(io.BytesIO(data)) as file:
+        value = file.pages.first.tags[tag].value
+    return list(value) if isinstance(value, tuple) else [value]
+
+
+SEGMENTS: list[tuple[str, dict[str, Any]]] = [
+    ("Strip", {"rowsperstrip": 8}),
+    ("Strip", {"rowsperstrip": 8, "compression": "zlib"}),
+    ("Tile", {"tile": (16, 16)}),
+    ("Tile", {"tile": (16, 16), "compression": "lzw"}),
+]
+
+
+@pytest.mark.parametrize(("kind", "layout"), SEGMENTS, ids=str)
+@pytest.mark.parametrize("index", [0, 2, 3])
+def test_an_empty_segment_is_refused(read: Read, noise: Noise, kind: str, layout: dict[str, Any], index: int) -> None:
+    """Alone wrong: the library would leave its pixels black. The other segments lie where they should."""
+    data = tiff(noise(32, 32, 3), **layout)
+    counts = numbers(data, f"{kind}ByteCounts")
+    assert len(counts) == 4
+    empty = patched(data, f"{kind}ByteCounts", 0, index)
+    if "compression" not in layout:  # so that the sum of all is right, which is looked at as well
+        empty = patched(empty, f"{kind}ByteCounts", 2 * counts[1], 1)
+    with pytest.raises(BrokenFileError, match="This TIFF file is damaged"):
+        read(empty)
+
+
+@pytest.mark.parametrize(("kind", "layout"), SEGMENTS, ids=str)
+@pytest.mark.parametrize("index", [0, 3])
+def test_a_segment_outside_the_file_is_refused(
+    read: Read, noise: Noise, kind: str, layout: dict[str, Any], index: int
+) -> None:
+    data = tiff(noise(32, 32, 3), **layout)
+    length = numbers(data, f"{kind}ByteCounts")[index]
+    last = len(data) - length
+    for start, right in ((last, True), (last + 1, False), (len(data) + 1000, False)):
+        moved = patched(data, f"{kind}Offsets", start, index)
+        if right:  # the last place that lies inside: no other check refuses it
+            assert numbers(moved, f"{kind}Offsets")[index] + length == len(data)
+            if "compression" not in layout:
+                assert read(moved).pixels.shape == (32, 32, 3)
+            continue
+        with pytest.raises(BrokenFileError, match="This TIFF file is damaged"):
+            read(moved)
+
+
+@pytest.mark.parametrize(("kind", "layout"), SEGMENTS, ids=str)
+def test_a_segment_that_is_not_listed_is_refused(read: Read, noise: Noise, kind: str, layout: dict[str, Any]) -> None:
+    """Rows or columns of tiles that the header promises, and no list of segments has."""
+    data = tiff(noise(32, 32, 3), **layout)
+    more = patched(data, "ImageLength", 33)
+    with pytest.raises(BrokenFileError, match="This TIFF file is damaged"):
+        read(more)
+    if kind == "Tile":
+        with pytest.raises(BrokenFileError, match="This TIFF file is damaged"):
+            read(patched(data, "ImageWidth", 33))
+
+
+@pytest.mark.parametrize("missing", [1, 100])
+def test_an_uncompressed_strip_that_is_too_short_is_refused(read: Read, noise: Noise, missing: int) -> None:
+    data = tiff(noise(32, 32, 3), rowsperstrip=8)
+    full = 8 * 32 * 3
+    assert numbers(data, "StripByteCounts") == [full] * 4
+    with pytest.raises(BrokenFileError, match="This TIFF file is damaged"):
+        read(patched(data, "StripByteCounts", full - missing, 2))
+    np.testing.assert_array_equal(read(data).pixels, noise(32, 32, 3))
+
+
+def test_a_row_of_few_bits_has_fewer_bytes(read: Read) -> None:
+    """Twelve bits: the sum of the strips is compared with bits, not with the bytes of what they become."""
+    pixels = np.arange(6 * 10, dtype=np.uint16).reshape(6, 10) * 60
+    data = tiff(pixels, photometric="minisblack", bitspersample=12, compression=None)
+    assert sum(numbers(data, "StripByteCounts")) == 6 * 15
+    np.testing.assert_array_equal(read(data).pixels[..., 0], pixels.astype(int) * 65535 // 4095)
+    with pytest.raises(BrokenFileError, match="This TIFF file is damaged"):
+        read(patched(data, "StripByteCounts", 6 * 15 - 1))
+
+
+def test_a_palette_of_eight_bits_in_a_table_of_sixteen_is_read(read: Read, noise: Noise) -> None:
+    """Some programs wrote 8 bits into it; 256 in the table is 1 of 16 bits."""
+    indices = noise(9, 14) % 4
+    table = np.zeros((3, 256), np.uint16)
+    table[:, :4] = [[0, 255, 10, 200], [1, 2, 3, 4], [40, 30, 20, 255]]
+    for scale in (1, 257):
+        data = tiff(indices, photometric="palette", colormap=table * scale)
+        np.testing.assert_array_equal(read(data).pixels, np.moveaxis(table[:, indices], 0, -1))
+
+
+def test_more_channels_than_it_has_colours_for_are_refused(read: Read, noise: Noise) -> None:
+    data = patched(tiff(noise(8, 8, 3)), "PhotometricInterpretation", 5)  # inks, of which it has only three
+    with pytest.raises(UnsupportedFormatError, match="colours of a kind that is not supported"):
+        read(data)
+
+
+def test_a_volume_is_refused(read: Read, noise: Noise) -> None:
+    file = io.BytesIO()
+    tifffile.imwrite(file, noise(4, 16, 16), photometric="minisblack", volumetric=True, tile=(4, 16, 16), metadata=None)
+    with pytest.raises(UnsupportedFormatError, match="a volume, not a picture"):
+        read(file.getvalue())
+
+
+def test_premultiplied_sixteen_bits_and_opaque_ones_are_exact(read: Read) -> None:
+    alpha = np.array([[65535, 32768, 1, 0]], np.uint16)
+    colours = np.array([[[65535, 0, 7]] * 4], np.uint16)
+    premultiplied = (colours.astype(np.uint64) * alpha[..., None] // 65535).astype(np.uint16)
+    data = tiff(np.concatenate([premultiplied, alpha[..., None]], axis=2), extrasamples=["assocalpha"])
+    picture = read(data)
+    expected = np.minimum(premultiplied.astype(np.uint64) * 65535 // np.maximum(alpha, 1)[..., None], 65535)
+    np.testing.assert_array_equal(picture.pixels, expected)
+    np.testing.assert_array_equal(picture.pixels[0, 0], colours[0, 0])
+    alpha[:] = 65535
+    opaque = tiff(np.concatenate([colours, alpha[..., None]], axis=2), extrasamples=["assocalpha"])
+    np.testing.assert_array_equal(read(opaque).pixels, colours)

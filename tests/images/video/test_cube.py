@@ -70,10 +70,47 @@ def test_what_is_not_the_block_is_mid_grey():
 
 @pytest.mark.parametrize(("count", "height", "width"), [(2000, 8, 8), (3, 1200, 30), (4, 30, 3000), (2, 1, 1)])
 def test_its_size_is_bounded(count, height, width):
-    film = np.broadcast_to(np.zeros((), np.uint8), (count, height, width, 1))
+    """Whatever its size, it has its three faces, each of one brightness, and nothing else."""
+    film = np.broadcast_to(np.array(200, np.uint8), (count, height, width, 1))
     drawn = block(film)
     assert max(drawn.shape) <= LONGEST + 1
     assert min(drawn.shape[:2]) >= 1
+    faces = {GROUND, 200, round(200 * FRONT), round(200 * SIDE)}
+    assert {*np.unique(drawn).tolist()} == faces
+    assert (drawn[-1, 0], drawn[0, -1]) == (round(200 * FRONT), 200)
+
+
+@pytest.mark.parametrize(
+    ("shape", "front", "rise"),
+    [
+        ((36, 20, 48), (36, 48), 10),  # as it is
+        ((40, 20, 48), (40, 48), 10),
+        ((18, 20, 48), (36, 48), 10),  # twice as high in time
+        ((17, 20, 48), (34, 48), 10),
+        ((2, 20, 48), (8, 48), 10),  # four times, and no more
+        ((1, 1, 1), (1, 1), 1),
+        ((2000, 20, 48), (710, 47), 10),  # as many layers as there are pixels, and all of it 10 in 730 smaller
+        ((36, 20, 2000), (52, 716), 4),  # stretched four times, then 720 in 2010 as large
+        ((300, 1440, 30), (212, 21), 508),  # 720 in 1020 as large
+    ],
+)
+def test_its_faces_have_the_sizes_of_the_video(shape: tuple[int, int, int], front: tuple[int, int], rise: int) -> None:
+    drawn = block(np.full((*shape, 1), 200, np.uint8))
+    assert drawn.shape == (front[0] + rise, front[1] + rise, 1)
+    assert (drawn[rise:, : front[1]] == round(200 * FRONT)).all()
+    assert (drawn == round(200 * FRONT)).sum() == front[0] * front[1]
+
+
+def test_a_frame_goes_to_one_layer_from_below_upwards() -> None:
+    """Not one layer is left out or written twice, however many frames there are for it."""
+    for count in (5, 719, 720, 721, 1000, 1440):
+        cube = VideoCube(2, 2, 1, count)
+        for index in range(count):
+            cube.add(np.full((2, 2, 1), index * 255 // count, np.uint8))
+        layers = min(count, LONGEST)
+        last = [max(i for i in range(count) if i * layers // count == layer) for layer in range(layers)]
+        assert cube._front[::-1, 0, 0].tolist() == [index * 255 // count for index in last]
+        assert (cube._side == cube._front).all()
 
 
 def test_a_long_film_runs_from_its_first_to_its_last_frame():
