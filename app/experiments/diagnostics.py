@@ -6,13 +6,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from app.images.crop import Rectangle, crop_to_centre
 from app.images.read import read_crop
 from app.images.video.reader import read_first_frame
 from app.methods.context import Progress
 from app.methods.model import Picture, Source
+from app.synthesis.arrays import Real
 from app.synthesis.structure import measure_delta
 
 DIGITS = 6  # of a number in the record
@@ -55,7 +55,7 @@ def _round(delta: float | None) -> float | None:
     return None if delta is None else round(delta, DIGITS)
 
 
-def _pixels(picture: Picture, path: Path) -> NDArray[np.float32]:
+def _pixels(picture: Picture, path: Path) -> Real:
     """The part of a texture that is measured."""
     area = crop_to_centre(Rectangle(0, 0, picture.width, picture.height))
     if picture.frames == 1:

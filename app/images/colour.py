@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.images.png_writer import Pixels
+from app.synthesis.arrays import Real
 
 NO_OPTIMISATION = imagecodecs.CMS.FLAGS.NOOPTIMIZE  # exact, not by interpolation in a coarse grid
 D65 = (0.3127, 0.3290, 1.0)
@@ -96,7 +97,7 @@ def _convert_deep(pixels: Pixels, profile: bytes) -> Pixels:
     return result
 
 
-def _add_channels(tables: NDArray[np.float32], pixels: NDArray[Any]) -> NDArray[np.float32]:
+def _add_channels(tables: Real, pixels: NDArray[Any]) -> Real:
     light = np.take(tables[0], pixels[..., 0], axis=0, mode="clip")
     light += np.take(tables[1], pixels[..., 1], axis=0, mode="clip")
     light += np.take(tables[2], pixels[..., 2], axis=0, mode="clip")

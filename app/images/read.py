@@ -5,7 +5,6 @@ from typing import BinaryIO
 
 import imagecodecs
 import numpy as np
-from numpy.typing import NDArray
 
 from app.errors import InvalidInputError
 from app.images.crop import Rectangle
@@ -22,13 +21,14 @@ from app.images.png_writer import (
     make_chunk,
     make_last_data,
 )
+from app.synthesis.arrays import Real
 
 OVERHEAD = 12  # bytes of a chunk around its content: length, name, checksum
 BEFORE_TABLE = len(SIGNATURE) + OVERHEAD + HEADER.size + OVERHEAD + 1  # IHDR and sRGB
 CHANNELS = {colour: channels for channels, colour in COLOUR_TYPES.items()}
 
 
-def read_crop(path: Path, rectangle: Rectangle) -> NDArray[np.float32]:
+def read_crop(path: Path, rectangle: Rectangle) -> Real:
     """Cut a rectangle out of a stored picture.
 
     Parameters

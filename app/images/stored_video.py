@@ -6,11 +6,11 @@ A crop of any frame is a rectangle of one picture, and is read without decoding 
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from app.images.crop import Frames, Rectangle
 from app.images.png_writer import Pixels
 from app.images.read import has_transparency, read_opaque, read_rectangle
+from app.synthesis.arrays import Bytes
 
 
 def locate_crop(crop: Rectangle, frame: int, height: int) -> Rectangle:
@@ -37,7 +37,7 @@ def locate_crop(crop: Rectangle, frame: int, height: int) -> Rectangle:
     return Rectangle(crop.x, crop.y + frame * height, crop.width, crop.height)
 
 
-def read_frames(path: Path, crop: Rectangle, frames: Frames, height: int) -> NDArray[np.uint8]:
+def read_frames(path: Path, crop: Rectangle, frames: Frames, height: int) -> Bytes:
     """Cut a crop out of a range of frames.
 
     Parameters

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from app.errors import InvalidInputError
 from app.methods.allowed import Allowed
@@ -18,6 +17,7 @@ from app.methods.context import Context
 from app.methods.explanations.model import Explanation, Reference
 from app.methods.params import MovingParams, Resolved, StillParams
 from app.methods.stages import Plan, Stages
+from app.synthesis.arrays import Bytes, Real
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class Size:
 class Film:
     """Frames of a video: (T, H, W, C) uint8, and ``rate``, how many are shown a second."""
 
-    frames: NDArray[np.uint8]
+    frames: Bytes
     rate: float
 
 
@@ -56,7 +56,7 @@ class Source:
     moving slot has its ``film`` besides; its ``pixels`` are the first frame's.
     """
 
-    pixels: NDArray[np.float32]
+    pixels: Real
     peak: int
     film: Film | None = None
 

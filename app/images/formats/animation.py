@@ -11,7 +11,6 @@ from collections.abc import Iterator
 from itertools import islice
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image
 
 from app.errors import BrokenFileError, UnsupportedFormatError
@@ -20,6 +19,7 @@ from app.images.formats import png, webp
 from app.images.formats.clip import Clip, ClipLimits, TimedFrame, check_clip
 from app.images.formats.still import DAMAGED, check_size, is_opaque, read_orientation, turn_upright
 from app.images.png_writer import HEADER, SIGNATURE
+from app.synthesis.arrays import Bytes
 
 MEDIA_TYPES = {"GIF": "image/gif", "PNG": "image/apng", "WEBP": "image/webp"}
 TOO_SHORT, DEFAULT_DURATION = 10.0, 100.0  # milliseconds
@@ -146,12 +146,12 @@ def _seek_frames(image: Image.Image, file: io.BytesIO) -> Iterator[Image.Image]:
         raise BrokenFileError(DAMAGED.format(image.format))
 
 
-def _read_pixels(image: Image.Image, size: tuple[int, int]) -> NDArray[np.uint8]:
+def _read_pixels(image: Image.Image, size: tuple[int, int]) -> Bytes:
     pixels = np.asarray(image.convert("RGBA"))
     if image.size != size:
         raise BrokenFileError(DAMAGED.format(image.format))
     return pixels
 
 
-def _is_grey(pixels: NDArray[np.uint8]) -> bool:
+def _is_grey(pixels: Bytes) -> bool:
     return np.array_equal(pixels[..., 0], pixels[..., 1]) and np.array_equal(pixels[..., 0], pixels[..., 2])

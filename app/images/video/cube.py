@@ -1,10 +1,10 @@
 """Video cube: a picture of a video as a block of stacked frames, with time as the vertical axis."""
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image
 
 from app.images.convert import GROUND
+from app.synthesis.arrays import Bytes
 
 LONGEST = 720  # pixels of the block, slanted sides and all
 MARGIN = 16
@@ -36,7 +36,7 @@ class VideoCube:
         self._top = np.zeros((height, width, channels), np.uint8)
         self._count, self._added = count, 0
 
-    def add(self, frame: NDArray[np.uint8]) -> None:
+    def add(self, frame: Bytes) -> None:
         """Lay the next frame, (H, W, C) uint8, on the others; only its edges are kept."""
         layer = len(self._front) - 1 - self._added * len(self._front) // self._count
         self._front[layer], self._side[layer] = frame[-1], frame[:, -1]
@@ -44,7 +44,7 @@ class VideoCube:
         if self._added == self._count:
             self._top[:] = frame
 
-    def draw(self) -> NDArray[np.uint8]:
+    def draw(self) -> Bytes:
         """Draw the block on mid-grey, (H, W, C) uint8, no side of it above 720 pixels; a small video is not reduced."""
         layers, width, channels = self._front.shape
         across, rise, up = self._compute_sides(width, len(self._top), layers)
@@ -68,7 +68,7 @@ class VideoCube:
         return across, back, up
 
 
-def _render_face(face: NDArray[np.uint8], width: int, height: int, brightness: float) -> NDArray[np.uint8]:
+def _render_face(face: Bytes, width: int, height: int, brightness: float) -> Bytes:
     image = Image.fromarray(np.ascontiguousarray(face[..., 0] if face.shape[2] == 1 else face))
     resized = np.asarray(image.resize((width, height), Image.Resampling.LANCZOS)).reshape(height, width, -1)
     return np.rint(resized * np.float32(brightness)).astype(np.uint8)

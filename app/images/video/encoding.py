@@ -1,12 +1,13 @@
 """Parallel encoding of several files of one video: every encoder works in a thread of its own."""
 
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, wait
 from types import TracebackType
 from typing import Self
 
 from app.images.video.writers import Frame, VideoWriter
+from app.synthesis.arrays import PartDone
 
 WAITING = 2  # frames that wait for an encoder before `write` does
 PATIENCE = 0.1  # seconds between two calls of `progress` while encoders finish
@@ -33,7 +34,7 @@ class Encoding:
                 pending.popleft().result()
             pending.append(thread.submit(writer.write, frame))
 
-    def finish(self, progress: Callable[[float], None]) -> None:
+    def finish(self, progress: PartDone) -> None:
         """Wait until every file is complete; ``progress`` is called with the share that is done, 0 to 1.
 
         Raises

@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, field_validator
 
 from app.errors import InvalidInputError
@@ -19,6 +18,7 @@ from app.methods.model import Method, Picture, Size, Slot, Source
 from app.methods.output.pictures import crops
 from app.methods.params import WHOLE_IN_MEMORY, Resolved
 from app.methods.stages import Plan
+from app.synthesis.arrays import Pixels
 from app.synthesis.fourier.field import Noise
 from app.synthesis.gaussian.adsn import white_noise
 from app.synthesis.gaussian.mixing import Mixture
@@ -93,7 +93,7 @@ class _Strip:
         kind = np.uint8 if context.depth == 8 else np.uint16
         self._pixels = np.empty((self._height, steps * self._width, channels), kind)
 
-    def put(self, step: int, first: int, block: NDArray[np.unsignedinteger]) -> None:
+    def put(self, step: int, first: int, block: Pixels) -> None:
         part = block[: max(0, self._height - first), : self._width]
         self._pixels[first : first + len(part), step * self._width : (step + 1) * self._width] = part
 
@@ -149,7 +149,7 @@ class _Run:
     ) -> Picture:
         writer = PngWriter(self._width, self._height, self._channels, self._context.depth)
 
-        def write(first: int, block: NDArray[np.unsignedinteger]) -> None:
+        def write(first: int, block: Pixels) -> None:
             writer.write(first, block)
             if strip:
                 strip.put(step, first, block)

@@ -4,7 +4,6 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 
 from app.errors import InvalidInputError
@@ -17,6 +16,7 @@ from app.methods.model import Picture, Size, Source
 from app.methods.output.pictures import log_modulus
 from app.methods.params import ADD_SMOOTH, ADVANCED, Resolved
 from app.methods.stages import Plan
+from app.synthesis.arrays import Real
 from app.synthesis.fourier.field import NoiseField
 from app.synthesis.fourier.periodic import smooth_planes
 from app.synthesis.fourier.spot import centre, make_spot
@@ -140,7 +140,7 @@ class _Run:
             add_smooth=params.add_smooth,
         )
 
-    def _picture(self, name: str, title: str, values: NDArray[np.float32]) -> Picture:
+    def _picture(self, name: str, title: str, values: Real) -> Picture:
         height, width = values.shape[1:]
         return self._write(name, title, height, width, lambda first, last: values[:, first:last].copy())
 
@@ -150,7 +150,7 @@ class _Run:
         title: str,
         height: int,
         width: int,
-        rows: Callable[[int, int], NDArray[np.float32]],
+        rows: Callable[[int, int], Real],
     ) -> Picture:
         """Write a picture of float rows (C, n, W) in the sample's range, cut off outside it."""
         writer = PngWriter(width, height, self._source.pixels.shape[2], self._context.depth)

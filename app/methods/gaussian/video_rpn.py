@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from app.methods.announced import FILMS, SHOWN_CLIP, views
 from app.methods.context import Context, Progress
@@ -15,7 +14,7 @@ from app.methods.output.films import crop_film, film_memory, texture_film
 from app.methods.output.pictures import encode, log_modulus
 from app.methods.params import MovingParams, Resolved
 from app.methods.stages import Plan
-from app.synthesis.arrays import Real
+from app.synthesis.arrays import Bytes, Real
 from app.synthesis.gaussian.video_rpn import VideoNoiseField
 from app.synthesis.parallel import Team
 
@@ -95,7 +94,7 @@ def _reported(field: VideoNoiseField, progress: Progress) -> Iterator[Real]:
         yield frame
 
 
-def _views(film: NDArray[np.uint8], field: VideoNoiseField, context: Context) -> Iterator[Picture]:
+def _views(film: Bytes, field: VideoNoiseField, context: Context) -> Iterator[Picture]:
     """The average frame, and two sections through the block of the squared moduli."""
     context.progress("spectrum", 0)
     still = Fact("still", "Part of the texture's contrast that stands still", 100 * field.still, "% of the variance")

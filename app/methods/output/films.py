@@ -1,6 +1,6 @@
 """From a method's frames to its films."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -15,6 +15,7 @@ from app.images.video.encoding import Encoding
 from app.images.video.writers import Frame, Kind, VideoWriter, name_repeated_edges
 from app.methods.context import Context
 from app.methods.model import Picture, Source
+from app.synthesis.arrays import PartDone
 
 
 class _File(NamedTuple):
@@ -101,7 +102,7 @@ def _written(
     size: tuple[int, int, int, int],
     rate: float,
     scratch: Path,
-    finishing: Callable[[float], None],
+    finishing: PartDone,
 ) -> Iterator[Picture]:
     width, height, channels, count = size
     writers: list[VideoWriter] = []

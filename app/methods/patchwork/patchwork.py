@@ -4,7 +4,6 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 
 from app.images.png_writer import PngWriter
@@ -26,7 +25,7 @@ from app.methods.patchwork.limits import (
 )
 from app.methods.patchwork.params import grid_field, reach_field, sharpness_field
 from app.methods.patchwork.pictures import cell_colours
-from app.synthesis.arrays import Real
+from app.synthesis.arrays import Checkpoint, Ints, Real
 from app.synthesis.parallel import Team, Work, row_blocks
 from app.synthesis.patchwork.cells import Cells
 from app.synthesis.patchwork.jittered_cells import jittered_cells, least_sample
@@ -37,7 +36,7 @@ from app.synthesis.sinks import Levels
 BANDS = 4  # that are in work at once
 DIMMED = np.float32(0.25)
 
-Rows = Callable[[int, int, Callable[[], None]], Real]
+Rows = Callable[[int, int, Checkpoint], Real]
 
 
 class PatchworkParams(StillParams):
@@ -118,7 +117,7 @@ def run(sources: Sequence[Source], resolved: Resolved[PatchworkParams], context:
         colours = cell_colours(cells, sources_of, places)
         soft = params.blend != "sharp"
 
-        def paint(top: int, bottom: int, checkpoint: Callable[[], None]) -> Real:
+        def paint(top: int, bottom: int, checkpoint: Checkpoint) -> Real:
             return paint_cells(cells, colours, top, bottom, soft=soft, checkpoint=checkpoint)
 
         png = streamed(paint, 3, 1, step.within("cells"))
@@ -128,7 +127,7 @@ def run(sources: Sequence[Source], resolved: Resolved[PatchworkParams], context:
     yield from crops(sources, context)
 
 
-def _key(cells: Cells, sources: NDArray[np.int64], places: Real, context: Context) -> Picture:
+def _key(cells: Cells, sources: Ints, places: Real, context: Context) -> Picture:
     """The colours of the crop's places, dimmed where no cell shows them."""
     height, width, _ = places.shape
     top, bottom, left, right = (cells.cores + np.repeat(sources, 2, axis=1)).clip(0, [height, height, width, width]).T

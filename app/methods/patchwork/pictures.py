@@ -4,7 +4,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from app.errors import InvalidInputError
 from app.images.png_writer import encode_png
@@ -14,7 +13,7 @@ from app.methods.model import Fact, Picture, Size, Source
 from app.methods.output.films import film_memory, texture_film
 from app.methods.output.pictures import encode
 from app.methods.patchwork.limits import Reached
-from app.synthesis.arrays import Real
+from app.synthesis.arrays import Ints, Real
 from app.synthesis.patchwork.best_places import Matches
 from app.synthesis.patchwork.cells import Cells, Window
 from app.synthesis.patchwork.video_patchwork import frames_in_order
@@ -125,7 +124,7 @@ def frames_bytes(size: Size, height: int, width: int) -> int:
     return HELD * 4 * size.channels * height * width + film_memory(width, height, size.channels)
 
 
-def cell_colours(cells: Cells, sources: NDArray[np.int64], places: Real) -> Real:
+def cell_colours(cells: Cells, sources: Ints, places: Real) -> Real:
     """A colour for each cell, (count, 3): that of the middle of what it shows.
 
     Parameters
@@ -142,7 +141,7 @@ def cell_colours(cells: Cells, sources: NDArray[np.int64], places: Real) -> Real
     return colours
 
 
-def compared_pattern(pattern: NDArray[np.float32], rescale: bool, peak: int, context: Context) -> Picture:
+def compared_pattern(pattern: Real, rescale: bool, peak: int, context: Context) -> Picture:
     """The pattern as it was compared with the texture, whose ``peak`` it has."""
     title = "Pattern with the texture's mean and range" if rescale else "Pattern as it is compared"
     return encode("pattern", title, pattern, peak, context)

@@ -4,7 +4,6 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 
 from app.methods.announced import FILMS, SHOWN_CLIP, views
@@ -33,7 +32,7 @@ from app.methods.patchwork.pictures import (
     refuse_short,
     textured,
 )
-from app.synthesis.arrays import Real
+from app.synthesis.arrays import Bytes, Real
 from app.synthesis.patchwork.cells import random_numbers
 from app.synthesis.patchwork.jittered_cells import jittered_cells, least_sample
 from app.synthesis.patchwork.transitions import Transitions, longest_interval
@@ -102,7 +101,7 @@ def run(sources: Sequence[Source], resolved: Resolved[VideoPatchworkParams], con
 
 
 def _fixed(
-    film: NDArray[np.uint8], shape: tuple[int, int, int], params: VideoPatchworkParams
+    film: Bytes, shape: tuple[int, int, int], params: VideoPatchworkParams
 ) -> tuple[Callable[[int], Real], Painter]:
     """The two-stage synthesis: what makes a frame, and what paints its cells."""
     frames, height, width = shape
@@ -121,7 +120,7 @@ def _fixed(
 
 
 def _mosaic(
-    film: NDArray[np.uint8], shape: tuple[int, int, int], params: VideoPatchworkParams
+    film: Bytes, shape: tuple[int, int, int], params: VideoPatchworkParams
 ) -> tuple[Callable[[int], Real], Painter]:
     """The three-dimensional mosaic: what makes a frame, and what paints its cells."""
     mosaic = VideoMosaic(

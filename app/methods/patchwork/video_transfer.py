@@ -4,7 +4,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from app.methods.announced import FILMS, SHOWN_CLIP, views
 from app.methods.context import Context
@@ -36,7 +35,7 @@ from app.methods.patchwork.pictures import (
     textured,
 )
 from app.methods.stages import Plan
-from app.synthesis.arrays import Real
+from app.synthesis.arrays import Ints, Real
 from app.synthesis.luminance import luminance
 from app.synthesis.parallel import Team, Work
 from app.synthesis.patchwork.cell_match import match_cells
@@ -117,9 +116,7 @@ def run(sources: Sequence[Source], resolved: Resolved[VideoTransferParams], cont
     yield encode("crop-2", "Pattern", pattern.pixels, pattern.peak, context)
 
 
-def _matched(
-    average: Real, wanted: Real, cells: Cells, params: VideoTransferParams, context: Context
-) -> NDArray[np.int64]:
+def _matched(average: Real, wanted: Real, cells: Cells, params: VideoTransferParams, context: Context) -> Ints:
     """The place of the clip for every cell, found in the average image."""
     with Team(context.threads) as team:
         matches = match_cells(

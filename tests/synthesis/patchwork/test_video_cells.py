@@ -21,7 +21,7 @@ def test_colours_say_where_in_the_clip():
     """Red from left to right, green from top to bottom, blue from first to last; of one frame there is no blue."""
     places = np.array([[0, 0, 0], [39, 0, 0], [0, 89, 0], [0, 0, 79], [13, 44.5, 39.5]])
     expected = [[0, 0, 0], [0, 0, 255], [0, 255, 0], [255, 0, 0], [127.5, 127.5, 85]]
-    np.testing.assert_allclose(source_colours(places, SIDES), expected, rtol=1e-6)
+    assert source_colours(places, SIDES) == pytest.approx(np.array(expected), rel=1e-6)
     assert source_colours(np.array([[0, 0, 0]]), (1, 1, 1)).tolist() == [[0, 0, 0]]
     assert source_colours(np.array([[-3, 95, -1]]), SIDES).tolist() == [[0, 255, 0]]
 

@@ -107,7 +107,7 @@ def test_the_verbatim_share_counts_pixels_of_the_offset_of_the_left_or_upper_nei
 def test_one_coordinate_that_jumps_parts_two_halves_in_either_direction(axis, coordinate):
     """A single line, in which each pixel has one neighbour: the second half's first is copied along with none."""
     shape = (8, 1) if axis == 0 else (1, 8)
-    copied = np.stack(np.indices(shape), 2) + np.array((3, 2))
+    copied = np.moveaxis(np.indices(shape), 0, 2) + np.array((3, 2))
     copied.reshape(8, 2)[4:, coordinate] += 5
     assert verbatim_share(copied) == 100 * 6 / 8
 
@@ -115,7 +115,7 @@ def test_one_coordinate_that_jumps_parts_two_halves_in_either_direction(axis, co
 def test_the_verbatim_share_is_that_of_a_plain_count():
     """Offsets of two values each, so that both, one or none of them are the neighbour's."""
     rng = np.random.default_rng(1)
-    copied = np.stack(np.indices((12, 15)), 2) + rng.integers(0, 2, (12, 15, 2))
+    copied = np.moveaxis(np.indices((12, 15)), 0, 2) + rng.integers(0, 2, (12, 15, 2))
     along = 0
     for y, x in np.ndindex(12, 15):
         left, above = (
