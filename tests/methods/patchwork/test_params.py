@@ -1,4 +1,4 @@
-"""The parameters that the patchwork methods share have one title and one range, and stand where each method wants them."""
+"""Fields that the patchwork methods share: one title and one range each, in the order that each method wants."""
 
 import pytest
 
