@@ -1,4 +1,4 @@
-"""Numbers as requests bring them: bounded where they are read, and said back in messages."""
+"""Numbers in requests: parsing, bounds, and quoting of values in error messages."""
 
 import json
 import re
@@ -8,7 +8,7 @@ FAR = 1_000_000  # pixels or frames: beyond any sample and any texture, and smal
 _WHOLE = re.compile(r"\s*[+-]?[0-9]{1,9}\s*")
 _WHOLE_WRITTEN = re.compile(r"([+-]?)([0-9]+)(?:[.,](?!000$)0+)?")  # three noughts after a sign may be thousands
 _WRITTEN = re.compile(r"([+-]?)([0-9]*)(?:[.,]([0-9]*))?(e[+-]?[0-9]+)?", re.IGNORECASE)
-_SAID = 60  # characters of a value that a message says back
+_QUOTED = 60  # characters of a value that a message says back
 
 
 def whole(text: str) -> int:
@@ -26,7 +26,7 @@ def whole(text: str) -> int:
     -12
     """
     if not _WHOLE.fullmatch(text):
-        raise ValueError(f"not a whole number of at most nine digits: {said(text)}")
+        raise ValueError(f"not a whole number of at most nine digits: {quote(text)}")
     return int(text)
 
 
@@ -51,16 +51,16 @@ def plain(text: str, *, whole: bool) -> str:
     sign, digits, *parts = found.groups(default="") if found else ("", "")
     rest, power = parts or ("", "")
     if not digits and not rest:
-        raise ValueError(f"not a{' whole' if whole else ''} number: {said(text)}")
+        raise ValueError(f"not a{' whole' if whole else ''} number: {quote(text)}")
     return ("-" if sign == "-" else "") + (digits.lstrip("0") or "0") + (f".{rest}" if rest else "") + power.lower()
 
 
-def said(value: object) -> str:
-    """Write a value as JSON for a message: cut in the middle where it is long, and of lists and objects the kind only.
+def quote(value: object) -> str:
+    """Quote a value in a message, as JSON: cut in the middle where it is long, and of lists and objects the kind only.
 
     Examples
     --------
-    >>> said("7"), said(True), said([1, 2]), said(10**400)
+    >>> quote("7"), quote(True), quote([1, 2]), quote(10**400)
     ('"7"', 'true', 'a list', '10000000000000000000…0000 (401 characters)')
     """
     if isinstance(value, list | tuple):
@@ -68,4 +68,4 @@ def said(value: object) -> str:
     if isinstance(value, dict):
         return "an object"
     text = json.dumps(value, ensure_ascii=False, default=str).encode(errors="backslashreplace").decode()
-    return text if len(text) <= _SAID else f"{text[:20]}…{text[-4:]} ({len(text)} characters)"
+    return text if len(text) <= _QUOTED else f"{text[:20]}…{text[-4:]} ({len(text)} characters)"

@@ -21,8 +21,8 @@ from numpy.typing import NDArray
 from app.images.decode import Limits, decode
 from app.images.video.reader import read_video
 from app.methods.context import Context
-from app.methods.model import Film, Picture, Source
-from app.methods.output.films import texture_film
+from app.methods.model import Clip, Picture, Source
+from app.methods.output.videos import encode_texture
 from app.methods.registry import method
 from app.settings import ROOT
 from app.synthesis.patchwork.patchwork import patchwork
@@ -61,7 +61,7 @@ def clip() -> Source:
     """The bundled clip of water."""
     found = decode(CLIP, Limits())
     frames = found.pixels.reshape(found.frames, found.height, -1, 3)
-    return Source(frames[0].astype(np.float32), 255, Film(frames, found.rate))
+    return Source(frames[0].astype(np.float32), 255, Clip(frames, found.rate))
 
 
 @contextmanager
@@ -105,7 +105,7 @@ def written(frames: NDArray[np.uint8]) -> Callable[[], None]:
     def run() -> None:
         with scratch() as context:
             size = {"width": width, "height": height, "channels": channels}
-            for _ in texture_film(frames, **size, count=count, rate=24.0, context=context):
+            for _ in encode_texture(frames, **size, count=count, rate=24.0, context=context):
                 pass
 
     return run

@@ -24,7 +24,7 @@ MADE = {
 }
 RUN_OVER_ALL = (
     "tests/methods/test_registry.py",
-    "tests/methods/test_announced.py",
+    "tests/methods/test_outputs.py",
     "tests/methods/test_depths.py",
     "tests/test_docs.py",
     "tests/test_architecture.py",
@@ -112,7 +112,7 @@ def test_it_passes_its_own_tests_and_those_that_every_method_passes(scaffolded: 
         *("-k", f"{MODULE} or {NAME} or test_docs or one_way or each_other"),
     )
     assert selected.returncode == 0, selected.stdout[-5000:]
-    assert f"{NAME}" in in_copy(scaffolded, "-c", "from app.gallery.groups import TOLD; print(TOLD)").stdout
+    assert f"{NAME}" in in_copy(scaffolded, "-c", "from app.gallery.groups import GROUPS; print(GROUPS)").stdout
 
 
 @pytest.mark.parametrize(

@@ -95,9 +95,9 @@ def methods(
     from rich.table import Table
 
     if name is not None:
-        from app.cli.told import tell
+        from app.cli.describe import describe
 
-        tell(chosen[0], Console())
+        describe(chosen[0], Console())
         return
     table = Table("method", "title", "what it computes", box=None, pad_edge=False, header_style="bold")
     for method in chosen:

@@ -15,9 +15,9 @@ from app.experiments.environment import environment
 from app.experiments.files.outputs import AnyFormat, name_of_file
 from app.experiments.model import Experiment
 from app.images.convert import convert
-from app.methods.announced import Announced
 from app.methods.effects import possible_output, refuse_deep
 from app.methods.model import Method, Picture
+from app.methods.outputs import OutputSpec
 
 STILLS: dict[str, AnyFormat] = {
     ".png": "png",
@@ -27,7 +27,7 @@ STILLS: dict[str, AnyFormat] = {
     ".tif": "tiff",
     ".tiff": "tiff",
 }
-FILMS: dict[str, AnyFormat] = {".webm": "webm", ".mp4": "mp4"}
+VIDEOS: dict[str, AnyFormat] = {".webm": "webm", ".mp4": "mp4"}
 ANIMATED: dict[str, AnyFormat] = {".webp": "webp"}
 PNG = "image/png"
 SUFFIXES = {PNG: ".png", "image/webp": ".webp", "video/webm": ".webm", "video/mp4": ".mp4"}
@@ -83,12 +83,12 @@ def check_directory(directory: Path, names: Iterable[str], *, overwrite: bool) -
         _check_free(directory / name, overwrite)
 
 
-def file_name(output: Announced | Picture) -> str:
+def file_name(output: OutputSpec | Picture) -> str:
     """Name the file of an output in a directory of all.
 
     Examples
     --------
-    >>> file_name(Announced("texture-mp4", media_type="video/mp4"))
+    >>> file_name(OutputSpec("texture-mp4", media_type="video/mp4"))
     'texture-mp4.mp4'
     """
     return f"{output.name}{SUFFIXES[output.media_type]}"
@@ -156,9 +156,9 @@ def write_record(
     (directory / RECORD).write_text(f"{text}\n", encoding="utf-8")
 
 
-def _formats(output: Announced) -> dict[str, AnyFormat]:
+def _formats(output: OutputSpec) -> dict[str, AnyFormat]:
     if output.video:
-        return FILMS
+        return VIDEOS
     return STILLS if output.media_type == PNG else ANIMATED
 
 

@@ -34,11 +34,11 @@ from app.images.decode import Decoded, Limits, decode
 from app.methods.allowed import Allowed
 from app.methods.context import Context, Progress
 from app.methods.effects import outputs_of
-from app.methods.model import Film, Method, Picture, Source
+from app.methods.model import Clip, Method, Picture, Source
 from app.methods.params import StillParams
 from app.methods.registry import method as method_named
 from app.methods.stages import Stages
-from app.numbers import said
+from app.numbers import quote
 from app.settings import Settings
 
 
@@ -199,7 +199,7 @@ def output_size(text: str, crop: Rectangle) -> tuple[int, int]:
     if (found := re.fullmatch(r"[x×](\d{1,3}(?:\.\d{1,3})?)", text, re.ASCII)) and float(found[1]) > 0:
         return crop.scale_size(float(found[1]))
     raise InvalidInputError(
-        f"--size is WIDTHxHEIGHT, for example 1024x1024, or a multiple of the crop, x2; got {said(text)}."
+        f"--size is WIDTHxHEIGHT, for example 1024x1024, or a multiple of the crop, x2; got {quote(text)}."
     )
 
 
@@ -212,7 +212,7 @@ def _cut(strip: NDArray[Any], photo: Decoded, crop: Rectangle, frames: Frames) -
 
 def _source(photo: Decoded, item: ExperimentInput, *, moving: bool) -> Source:
     frames = _cut(photo.pixels, photo, item.crop, item.frames)
-    film = Film(np.ascontiguousarray(frames), photo.rate) if moving else None
+    film = Clip(np.ascontiguousarray(frames), photo.rate) if moving else None
     return Source(frames[0].astype(np.float32), 2**photo.depth - 1, film)
 
 

@@ -18,7 +18,7 @@ from app.methods.fields import fields, reason, requirement
 from app.methods.model import Method, Size, Slot
 from app.methods.params import StillParams
 from app.methods.registry import method as method_named
-from app.numbers import said
+from app.numbers import quote
 
 LEAST_FRAMES = 2
 
@@ -205,7 +205,9 @@ def explain(fault: ErrorDetails, method: Method) -> InvalidInputError:
     field = ".".join(["parameters", *path])
     if fault["type"] == "extra_forbidden":
         known = ", ".join(method.params.model_fields)
-        return InvalidInputError(f"The method {method.name} has no parameter {said(path[-1])}; it has: {known}.", field)
+        return InvalidInputError(
+            f"The method {method.name} has no parameter {quote(path[-1])}; it has: {known}.", field
+        )
     entry = next((entry for entry in fields(method.params) if entry.name in path[:1]), None)
     words = reason(fault["msg"]) if entry is None else requirement(entry, fault["msg"])
-    return InvalidInputError(f"{words.removesuffix('.')}; got {said(fault['input'])}.", field)
+    return InvalidInputError(f"{words.removesuffix('.')}; got {quote(fault['input'])}.", field)

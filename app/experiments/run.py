@@ -18,7 +18,7 @@ from app.experiments.ports import BlobStore, ExperimentStore
 from app.images.read import read_crop
 from app.images.stored_video import locate_crop, read_frames
 from app.methods.context import Context, Progress
-from app.methods.model import Film, Picture, Source
+from app.methods.model import Clip, Picture, Source
 from app.methods.registry import method as method_named
 from app.methods.stages import Plan, Stages
 
@@ -149,7 +149,7 @@ def _read(store: ExperimentStore, blobs: BlobStore, experiment: Experiment, prog
         sample = store.sample(item.sample)
         path, peak = blobs.path(sample.digest), 65535 if sample.depth == 16 else 255
         if method.slot(index).moving:
-            film = Film(read_frames(path, item.crop, item.frames, sample.height), sample.rate)
+            film = Clip(read_frames(path, item.crop, item.frames, sample.height), sample.rate)
             sources.append(Source(film.frames[0].astype(np.float32), peak, film))
         else:
             pixels = read_crop(path, locate_crop(item.crop, item.frames.first, sample.height))

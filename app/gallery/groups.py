@@ -1,4 +1,4 @@
-"""The methods in the order in which one would tell of them."""
+"""Grouping and order of the methods on the overview page."""
 
 from dataclasses import dataclass
 
@@ -20,7 +20,7 @@ class Group:
         return tuple(METHODS[name] for name in self.names if name in METHODS)
 
 
-TOLD = (
+GROUPS = (
     Group(
         "Random phase and Gaussian models",
         "All they know of a sample is its mean and its Fourier modulus. They give a texture of any size at once, and "
@@ -56,5 +56,5 @@ TOLD = (
 
 def groups() -> tuple[Group, ...]:
     """The groups that have methods; those that stand in none come last."""
-    rest = tuple(name for name in METHODS if not any(name in group.names for group in TOLD))
-    return tuple(group for group in (*TOLD, Group("More", "", rest)) if group.methods)
+    rest = tuple(name for name in METHODS if not any(name in group.names for group in GROUPS))
+    return tuple(group for group in (*GROUPS, Group("More", "", rest)) if group.methods)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from app.errors import InvalidInputError
-from app.numbers import said, whole
+from app.numbers import quote, whole
 from app.synthesis.structure import CENTRE
 
 
@@ -34,7 +34,7 @@ class Rectangle:
             x, y, width, height = (whole(part) for part in text.split(","))
         except ValueError:
             raise InvalidInputError(
-                f"A crop is four whole numbers x,y,width,height, for example 10,20,256,256; got {said(text)}.", "crop"
+                f"A crop is four whole numbers x,y,width,height, for example 10,20,256,256; got {quote(text)}.", "crop"
             ) from None
         return cls(x, y, width, height)
 
@@ -97,7 +97,7 @@ class Frames:
             first, count = (whole(part) for part in text.split(","))
         except ValueError:
             raise InvalidInputError(
-                f"A time range is two whole numbers first,count, for example 0,48; got {said(text)}.", "frames"
+                f"A time range is two whole numbers first,count, for example 0,48; got {quote(text)}.", "frames"
             ) from None
         return cls(first, count)
 

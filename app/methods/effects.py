@@ -3,8 +3,8 @@
 from collections.abc import Collection, Sequence
 
 from app.errors import InvalidInputError
-from app.methods.announced import Announced
 from app.methods.model import Method, Size
+from app.methods.outputs import OutputSpec
 from app.methods.params import MovingParams, StillParams
 
 COMMON = frozenset(MovingParams.model_fields)  # whoever runs several methods gives them to each, whether it needs them
@@ -12,7 +12,7 @@ EVERYTHING = "have all of them made (--all on the command line, an experiment ov
 FEW = 4  # names that a sentence lists in full
 
 
-def outputs_of(method: Method, params: StillParams, inputs: int) -> tuple[Announced, ...]:
+def outputs_of(method: Method, params: StillParams, inputs: int) -> tuple[OutputSpec, ...]:
     """The outputs of a run with these parameters, of so many inputs, in their order.
 
     Examples
@@ -22,7 +22,7 @@ def outputs_of(method: Method, params: StillParams, inputs: int) -> tuple[Announ
     >>> [output.name for output in outputs_of(dsn, dsn.params(), 1)]
     ['texture', 'crop', 'spot', 'points']
     """
-    return tuple(output for output in method.outputs if output.given(params, inputs))
+    return tuple(output for output in method.outputs if output.applies(params, inputs))
 
 
 def made_by(method: Method, parameter: str) -> list[str]:
@@ -38,7 +38,7 @@ def made_by(method: Method, parameter: str) -> list[str]:
     return [] if any(not output.condition for output in changed) else [output.name for output in changed]
 
 
-def output_named(method: Method, name: str, params: StillParams, inputs: int) -> Announced:
+def output_named(method: Method, name: str, params: StillParams, inputs: int) -> OutputSpec:
     """The output of this name.
 
     Raises
@@ -47,7 +47,7 @@ def output_named(method: Method, name: str, params: StillParams, inputs: int) ->
         At ``output``, with the names there are, or with what it takes to be given that one.
     """
     found = possible_output(method, name)
-    if found.given(params, inputs):
+    if found.applies(params, inputs):
         return found
     names = ", ".join(output.name for output in outputs_of(method, params, inputs))
     raise InvalidInputError(
@@ -56,7 +56,7 @@ def output_named(method: Method, name: str, params: StillParams, inputs: int) ->
     )
 
 
-def possible_output(method: Method, name: str) -> Announced:
+def possible_output(method: Method, name: str) -> OutputSpec:
     """The output of this name, whether or not it is given under the parameters at hand.
 
     Raises
@@ -71,12 +71,12 @@ def possible_output(method: Method, name: str) -> Announced:
     return found
 
 
-def refuse_deep(output: Announced, deepest: int) -> None:
+def refuse_deep(output: OutputSpec, deepest: int) -> None:
     """Refuse 16 bits per channel for what has 8, whatever is asked for.
 
     Parameters
     ----------
-    output : Announced
+    output : OutputSpec
     deepest : int
         Bits per channel of the deepest sample.
 
@@ -87,7 +87,7 @@ def refuse_deep(output: Announced, deepest: int) -> None:
     """
     if output.video:
         raise InvalidInputError("A video has 8 bits per channel: leave the depth out.", "depth")
-    if not output.deep or (output.as_given and deepest == 8):
+    if not output.deep or (output.as_uploaded and deepest == 8):
         whose = "the 8 bits per channel of its sample" if output.deep else "8 bits per channel"
         raise InvalidInputError(f"The output {output.name!r} has {whose}: leave the depth out.", "depth")
 

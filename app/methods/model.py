@@ -1,4 +1,4 @@
-"""What a method declares, and what it is given and gives back.
+"""Methods and their values: `Method`, its inputs (`Slot`, `Size`, `Source`) and its outputs (`Picture`, `Fact`).
 
 A method is declared once; its form, its API schema, its command line options and its page come from that.
 """
@@ -12,9 +12,9 @@ import numpy as np
 
 from app.errors import InvalidInputError
 from app.methods.allowed import Allowed
-from app.methods.announced import Announced
 from app.methods.context import Context
 from app.methods.explanations.model import Explanation, Reference
+from app.methods.outputs import OutputSpec
 from app.methods.params import MovingParams, Resolved, StillParams
 from app.methods.stages import Plan, Stages
 from app.synthesis.arrays import Bytes, Real
@@ -41,8 +41,8 @@ class Size:
 
 
 @dataclass(frozen=True)
-class Film:
-    """Frames of a video: (T, H, W, C) uint8, and ``rate``, how many are shown a second."""
+class Clip:
+    """Video of an input: ``frames``, (T, H, W, C) uint8, and ``rate``, how many of them are shown a second."""
 
     frames: Bytes
     rate: float
@@ -50,33 +50,38 @@ class Film:
 
 @dataclass(frozen=True)
 class Source:
-    """One input as a method is given it: the crop's pixels.
+    """Pixels of one input: those of its crop.
 
-    ``pixels`` is (H, W, C) float32 in the sample's own range [0, ``peak``]; ``peak`` is 255 or 65535. An input of a
-    moving slot has its ``film`` besides; its ``pixels`` are the first frame's.
+    Parameters
+    ----------
+    pixels : ndarray of float32, shape (H, W, C)
+        In the sample's own range, 0 to ``peak``; of a clip those of the first frame.
+    peak : int
+        255 or 65535.
+    clip : Clip, optional
+        The video, of an input of a moving slot.
     """
 
     pixels: Real
     peak: int
-    film: Film | None = None
+    clip: Clip | None = None
 
-    @property
-    def clip(self) -> Film:
-        """The video of an input of a moving slot.
+    def require_clip(self) -> Clip:
+        """Return the video of an input of a moving slot.
 
         Raises
         ------
         TypeError
             For a still picture.
         """
-        if self.film is None:
+        if self.clip is None:
             raise TypeError("This input is a still picture, and its slot takes a video.")
-        return self.film
+        return self.clip
 
     @property
     def size(self) -> Size:
         height, width, channels = self.pixels.shape
-        return Size(width, height, channels, 1 if self.film is None else len(self.film.frames))
+        return Size(width, height, channels, 1 if self.clip is None else len(self.clip.frames))
 
 
 @dataclass(frozen=True)
@@ -155,7 +160,7 @@ class Method:
         Among them is ``crop``, and ``crop-2``, … for further inputs (see `app.methods.output.pictures.crops`).
         Its inputs are finite and its `Resolved` parameters have passed ``check``: see `pictures`, which calls it.
         It calls ``context.progress`` with its stages and the part of each that is done.
-    outputs : tuple of Announced
+    outputs : tuple of OutputSpec
         Every picture that it may yield, in that order.
     stages : callable ``(sizes, resolved) -> Plan``
         The stages that a run with these parameters goes through, in their order, with weights: see `Stages`.
@@ -187,7 +192,7 @@ class Method:
     references: tuple[Reference, ...]
     explanation: Explanation
     run: Callable[[Sequence[Source], Resolved[Any], Context], Iterator[Picture]]
-    outputs: tuple[Announced, ...]
+    outputs: tuple[OutputSpec, ...]
     stages: Callable[[Sequence[Size], Resolved[Any]], Plan]
     check: Callable[[Sequence[Size], Resolved[Any]], None] = lambda sizes, resolved: None
     more: int = 0

@@ -13,7 +13,7 @@ from starlette.routing import Match
 
 from app import errors
 from app.methods.fields import reason
-from app.numbers import said
+from app.numbers import quote
 from app.web.headers import API_PREFIX, security_headers
 
 MEDIA_TYPE = "application/problem+json"
@@ -119,7 +119,7 @@ def _place(fault: Mapping[str, Any]) -> str:
 
 def _message(fault: Mapping[str, Any]) -> str:
     """Name the field, what is wrong with it and what came; of a missing one nothing came."""
-    came = "" if fault["type"] == "missing" else f"; got {said(fault['input'])}"
+    came = "" if fault["type"] == "missing" else f"; got {quote(fault['input'])}"
     return f"{_place(fault) or 'The body'}: {reason(fault['msg'])}{came}."
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from app.methods.context import Context, Progress
-from app.methods.model import Film, Method, Picture, Source
+from app.methods.model import Clip, Method, Picture, Source
 from app.methods.params import StillParams
 from app.methods.registry import METHODS
 
@@ -52,7 +52,7 @@ def a_clip(height: int = 48, width: int = 64, channels: int = 3, frames: int = 1
     rng = np.random.default_rng(seed + 100)
     film = np.stack([still[:, 2 * t : 2 * t + width] for t in range(frames)])
     film = np.round(film + rng.uniform(-20, 20, film.shape)).clip(0, 255).astype(np.uint8)
-    return Source(film[0].astype(np.float32), 255, Film(film, 12.0))
+    return Source(film[0].astype(np.float32), 255, Clip(film, 12.0))
 
 
 def sources_for(method: Method, **shape: Any) -> list[Source]:

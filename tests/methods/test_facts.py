@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from imagecodecs import png_decode
 
-from app.methods.model import Film, Source
+from app.methods.model import Clip, Source
 from app.methods.registry import METHODS
 from app.synthesis.fourier.periodic import periodic_component
 from app.synthesis.gaussian.texton import radii, texton
@@ -125,8 +125,8 @@ def test_efros_and_leung_prints_what_is_copied_along_of_a_ramp():
 
 def test_video_rpn_prints_the_part_of_the_variance_that_stands_still(tmp_path):
     source = a_clip()
-    assert isinstance(source.film, Film)
+    assert isinstance(source.clip, Clip)
     found = facts(outputs("video-rpn", source, scratch=tmp_path, seed=4, frames=9, width=50)["average"])
-    z = video_rpn(source.film.frames, 9, 48, 50, seed=4).astype(np.float64)
+    z = video_rpn(source.clip.frames, 9, 48, 50, seed=4).astype(np.float64)
     still = z.mean(0).var((0, 1)).sum() / z.var((0, 1, 2)).sum()
     assert found["still"] == pytest.approx(100 * still, rel=1e-3)

@@ -115,4 +115,4 @@ def test_memory_is_refused_above_what_is_allowed_with_what_makes_it_less() -> No
 
 def test_a_still_picture_in_the_place_of_a_clip_is_a_fault_of_the_caller() -> None:
     with pytest.raises(TypeError, match="takes a video"):
-        _ = a_crop().clip
+        _ = a_crop().require_clip()

@@ -15,7 +15,7 @@ from app.methods.effects import possible_output, refuse_deep
 from app.methods.registry import method as method_named
 
 AnyFormat = Format | VideoFormat
-MP4_SUFFIX = "-mp4"  # ends the name of a film's second file: see `app.methods.output.films`
+MP4_SUFFIX = "-mp4"  # ends the name of a film's second file: see `app.methods.output.videos`
 DEEP_SECONDS = 120.0  # how long a download waits for its output at 16 bits
 
 

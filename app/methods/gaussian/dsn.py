@@ -8,7 +8,6 @@ import numpy as np
 from pydantic import Field
 
 from app.errors import InvalidInputError
-from app.methods.announced import shown_inputs, texture, views
 from app.methods.context import Context
 from app.methods.explanations.dsn import EXPLANATION
 from app.methods.explanations.references import IPOL_RPN, PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES, SPOT_NOISE
@@ -16,6 +15,7 @@ from app.methods.gaussian.params import SpotParams, not_extended
 from app.methods.inputs import INPUTS
 from app.methods.model import Fact, Method, Picture, Size, Source
 from app.methods.output.pictures import crops, encode
+from app.methods.outputs import shown_inputs, texture, views
 from app.methods.params import WHOLE_IN_MEMORY, Resolved
 from app.methods.stages import Plan
 from app.synthesis.arrays import Ints, Real

@@ -7,7 +7,6 @@ from pydantic import Field, field_validator
 
 from app.errors import InvalidInputError
 from app.images.png_writer import PngWriter, encode_png
-from app.methods.announced import Announced, Condition, from_inputs, shown_inputs, texture
 from app.methods.context import Context
 from app.methods.explanations.mix import EXPLANATION
 from app.methods.explanations.references import GAUSSIAN_MIXING, PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
@@ -16,6 +15,7 @@ from app.methods.gaussian.weights import canonical
 from app.methods.inputs import alike
 from app.methods.model import Method, Picture, Size, Slot, Source
 from app.methods.output.pictures import crops
+from app.methods.outputs import Condition, OutputSpec, from_inputs, shown_inputs, texture
 from app.methods.params import WHOLE_IN_MEMORY, Resolved
 from app.methods.stages import Plan
 from app.synthesis.arrays import Pixels
@@ -190,7 +190,7 @@ OUTPUTS = (
         texture(f"sample-{number}", _WEIGHED, from_inputs(least), f"there are {least} inputs or more")
         for number, least in ((1, 3), (2, 3), (3, 3), (4, 4))
     ),
-    Announced("strip", of=_PATH, given=_holds(1), condition="there are two inputs and some “Steps of the path”"),
+    OutputSpec("strip", of=_PATH, applies=_holds(1), condition="there are two inputs and some “Steps of the path”"),
 )
 
 MIX = Method(

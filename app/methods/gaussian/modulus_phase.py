@@ -6,13 +6,13 @@ import numpy as np
 from pydantic import Field
 
 from app.errors import InvalidInputError
-from app.methods.announced import shown_inputs, texture, views
 from app.methods.context import Context
 from app.methods.explanations.modulus_phase import EXPLANATION
 from app.methods.explanations.references import OPPENHEIM_LIM, RANDOM_PHASE_TEXTURES
 from app.methods.inputs import alike
 from app.methods.model import Method, Picture, Size, Slot, Source
 from app.methods.output.pictures import crops, encode, log_modulus
+from app.methods.outputs import shown_inputs, texture, views
 from app.methods.params import MAX_SEED, WHOLE_IN_MEMORY, Resolved, StillParams
 from app.numbers import FAR
 from app.synthesis.fourier.spot import centre

@@ -8,12 +8,12 @@ from pydantic import Field
 
 from app.errors import InvalidInputError
 from app.images.png_writer import PngWriter
-from app.methods.announced import shown_inputs, texture, views
 from app.methods.context import Context, Progress
 from app.methods.gaussian.params import SpotParams
 from app.methods.inputs import refuse_other_size
 from app.methods.model import Picture, Size, Source
 from app.methods.output.pictures import log_modulus
+from app.methods.outputs import shown_inputs, texture, views
 from app.methods.params import ADD_SMOOTH, ADVANCED, Resolved
 from app.methods.stages import Plan
 from app.synthesis.arrays import Real

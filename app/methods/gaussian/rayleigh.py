@@ -5,13 +5,13 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from app.errors import InvalidInputError
-from app.methods.announced import shown_inputs, texture, views
 from app.methods.context import Context
 from app.methods.explanations.rayleigh import EXPLANATION
 from app.methods.explanations.references import PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
 from app.methods.inputs import INPUTS
 from app.methods.model import Fact, Method, Picture, Size, Source
 from app.methods.output.pictures import crops, encode, log_modulus
+from app.methods.outputs import shown_inputs, texture, views
 from app.methods.params import WHOLE_IN_MEMORY, Resolved, StillParams
 from app.methods.stages import Plan
 from app.synthesis.arrays import Real

@@ -6,7 +6,6 @@ from math import sqrt
 import numpy as np
 from pydantic import Field
 
-from app.methods.announced import Announced, shown_inputs, texture, views
 from app.methods.context import Context
 from app.methods.explanations.references import PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
 from app.methods.explanations.references import TEXTON as TEXTON_ARTICLE
@@ -14,6 +13,7 @@ from app.methods.explanations.texton import EXPLANATION
 from app.methods.inputs import INPUTS
 from app.methods.model import Fact, Method, Picture, Source
 from app.methods.output.pictures import crops, encode
+from app.methods.outputs import OutputSpec, shown_inputs, texture, views
 from app.methods.params import WHOLE_IN_MEMORY, Resolved, StillParams
 from app.methods.stages import Plan
 from app.numbers import FAR
@@ -26,7 +26,7 @@ from app.synthesis.gaussian.texton import extend_texton, radii, texton, texton_n
 PERCENT = (50, 90, 99)
 CUT_OFF = 0.001  # part of a texton's values that its linear picture shows as black or white
 DECADES = 3.0
-NOISES = Announced("noises", given=lambda params, inputs: params.cut is not None, condition="the texton is cut")
+NOISES = OutputSpec("noises", applies=lambda params, inputs: params.cut is not None, condition="the texton is cut")
 
 
 class TextonParams(StillParams):

@@ -4,14 +4,14 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from app.methods.announced import FILMS, SHOWN_CLIP, views
 from app.methods.context import Context, Progress
 from app.methods.explanations.references import GAUSSIAN_MIXING, IPOL_RPN, PERIODIC_PLUS_SMOOTH, RANDOM_PHASE_TEXTURES
 from app.methods.explanations.video_rpn import EXPLANATION
 from app.methods.gaussian.params import SpotParams, not_extended
 from app.methods.model import Fact, Method, Picture, Size, Slot, Source
-from app.methods.output.films import crop_film, film_memory, texture_film
 from app.methods.output.pictures import encode, log_modulus
+from app.methods.output.videos import encode_crop, encode_texture, encoding_bytes
+from app.methods.outputs import SHOWN_CLIP, VIDEO_OUTPUTS, views
 from app.methods.params import MovingParams, Resolved
 from app.methods.stages import Plan
 from app.synthesis.arrays import Bytes, Real
@@ -36,7 +36,7 @@ def memory(sizes: Sequence[Size], resolved: Resolved[VideoRpnParams]) -> int:
         needed += _spectrum_bytes(shape, clip.channels)
     wide, high = max(width, clip.width), max(height, clip.height)
     floats = clip.channels * wide * (FRAMES * high + ROWS * max(frames, clip.frames))
-    return needed + 4 * floats + film_memory(wide, high, clip.channels)
+    return needed + 4 * floats + encoding_bytes(wide, high, clip.channels)
 
 
 def _spectrum_bytes(shape: tuple[int, int, int], channels: int) -> int:
@@ -47,7 +47,7 @@ def _spectrum_bytes(shape: tuple[int, int, int], channels: int) -> int:
 def run(sources: Sequence[Source], resolved: Resolved[VideoRpnParams], context: Context) -> Iterator[Picture]:
     """The texture's files, then what was measured on the way, then the crop's."""
     source = sources[0]
-    film, rate = source.clip.frames, source.clip.rate
+    film, rate = source.require_clip().frames, source.require_clip().rate
     params, shape = resolved.params, resolved.shape
     with Team(context.threads) as team:
         field = VideoNoiseField(
@@ -59,7 +59,7 @@ def run(sources: Sequence[Source], resolved: Resolved[VideoRpnParams], context: 
             team=team,
             progress=context.progress,
         )
-        yield from texture_film(
+        yield from encode_texture(
             _reported(field, context.progress),
             width=shape[2],
             height=shape[1],
@@ -70,7 +70,7 @@ def run(sources: Sequence[Source], resolved: Resolved[VideoRpnParams], context: 
         )
     yield from _views(film, field, context)
     del field  # its spectrum, before the encoders take their memory again
-    yield from crop_film(source, context)
+    yield from encode_crop(source, context)
 
 
 def stages(sizes: Sequence[Size], resolved: Resolved[VideoRpnParams]) -> Plan:
@@ -115,7 +115,7 @@ VIDEO_RPN = Method(
     references=(RANDOM_PHASE_TEXTURES, GAUSSIAN_MIXING, IPOL_RPN, PERIODIC_PLUS_SMOOTH),
     explanation=EXPLANATION,
     run=run,
-    outputs=(*FILMS, *views("average", of=()), *views("spectrum", "spectrum-in-time", deep=False), *SHOWN_CLIP),
+    outputs=(*VIDEO_OUTPUTS, *views("average", of=()), *views("spectrum", "spectrum-in-time", deep=False), *SHOWN_CLIP),
     idle=not_extended,
     stages=stages,
     memory=memory,

@@ -7,13 +7,13 @@ import numpy as np
 from pydantic import Field
 
 from app.images.png_writer import PngWriter
-from app.methods.announced import shown_inputs, texture, views
 from app.methods.context import Context, Progress
 from app.methods.explanations.patchwork import EXPLANATION
 from app.methods.explanations.references import PATCHWORK as REPORT
 from app.methods.inputs import INPUTS
 from app.methods.model import Fact, Method, Picture, Size, Source
 from app.methods.output.pictures import coordinate_colours, crops, encode
+from app.methods.outputs import shown_inputs, texture, views
 from app.methods.params import ADVANCED, Resolved, StillParams
 from app.methods.patchwork.limits import (
     BYTES_OF_CELL,

@@ -10,8 +10,8 @@ from app.images.png_writer import encode_png
 from app.images.video.cube import VideoCube
 from app.methods.context import Context
 from app.methods.model import Fact, Picture, Size, Source
-from app.methods.output.films import film_memory, texture_film
 from app.methods.output.pictures import encode
+from app.methods.output.videos import encode_texture, encoding_bytes
 from app.methods.patchwork.limits import Reached
 from app.synthesis.arrays import Ints, Real
 from app.synthesis.patchwork.best_places import Matches
@@ -65,13 +65,13 @@ def textured(
     """
     frames, height, width = shape
     made = frames_in_order(frame, frames, context.threads, lambda part: context.progress("frames", part))
-    yield from texture_film(
+    yield from encode_texture(
         made,
         width=width,
         height=height,
         channels=source.size.channels,
         count=frames,
-        rate=source.clip.rate,
+        rate=source.require_clip().rate,
         context=context,
     )
 
@@ -100,7 +100,7 @@ def cells_cube(painter: Painter, shape: tuple[int, int, int], context: Context) 
     )
 
 
-def film_bytes(size: Size) -> int:
+def clip_bytes(size: Size) -> int:
     """Bytes of a clip."""
     return size.frames * size.channels * size.height * size.width
 
@@ -113,15 +113,15 @@ def patchwork_bytes(size: Size, joined: Reached) -> int:
     """
     r, height, width = joined.edge, joined.height, joined.width
     margins = replace(size, width=size.width + 2 * r, height=size.height + 2 * r)
-    average = film_bytes(replace(margins, frames=1))
+    average = clip_bytes(replace(margins, frames=1))
     weights = 0 if joined.all_cells else 4 * round((2 * r / joined.params.grid) ** 2 * height * width)
-    held = film_bytes(size) + film_bytes(margins) + 16 * average + joined.table_bytes + weights
+    held = clip_bytes(size) + clip_bytes(margins) + 16 * average + joined.table_bytes + weights
     return held + frames_bytes(size, height, width)
 
 
 def frames_bytes(size: Size, height: int, width: int) -> int:
     """Bytes of what is held of frames of this size, with the channels of the clip, while they are made and encoded."""
-    return HELD * 4 * size.channels * height * width + film_memory(width, height, size.channels)
+    return HELD * 4 * size.channels * height * width + encoding_bytes(width, height, size.channels)
 
 
 def cell_colours(cells: Cells, sources: Ints, places: Real) -> Real:

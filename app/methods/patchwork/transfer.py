@@ -4,13 +4,13 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from app.methods.announced import shown_inputs, texture, views
 from app.methods.context import Context
 from app.methods.explanations.references import PATCHWORK
 from app.methods.explanations.transfer import EXPLANATION
 from app.methods.inputs import alike
 from app.methods.model import Method, Picture, Size, Slot, Source
 from app.methods.output.pictures import coordinate_colours, crops, encode
+from app.methods.outputs import shown_inputs, texture, views
 from app.methods.params import WHOLE_IN_MEMORY, Resolved, StillParams
 from app.methods.patchwork.limits import (
     BYTES_OF_CELL,

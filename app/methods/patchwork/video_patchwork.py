@@ -6,12 +6,12 @@ from typing import Literal
 import numpy as np
 from pydantic import Field
 
-from app.methods.announced import FILMS, SHOWN_CLIP, views
 from app.methods.context import Context
 from app.methods.explanations.references import PATCHWORK
 from app.methods.explanations.video_patchwork import EXPLANATION
 from app.methods.model import Method, Picture, Size, Slot, Source
-from app.methods.output.films import crop_film
+from app.methods.output.videos import encode_crop
+from app.methods.outputs import SHOWN_CLIP, VIDEO_OUTPUTS, views
 from app.methods.params import Resolved, SeamlessParams
 from app.methods.patchwork.limits import (
     Reached,
@@ -26,7 +26,7 @@ from app.methods.patchwork.pictures import (
     Painter,
     average_picture,
     cells_cube,
-    film_bytes,
+    clip_bytes,
     frames_bytes,
     patchwork_bytes,
     refuse_short,
@@ -85,19 +85,19 @@ def memory(sizes: Sequence[Size], resolved: Resolved[VideoPatchworkParams]) -> i
     size, params, height, width = sizes[0], resolved.params, resolved.height, resolved.width
     if params.arrangement == "fixed":
         return patchwork_bytes(size, Reached(params, height, width, params.tileable))
-    return 2 * film_bytes(size) + tile_bytes(height, width) + frames_bytes(size, height, width)
+    return 2 * clip_bytes(size) + tile_bytes(height, width) + frames_bytes(size, height, width)
 
 
 def run(sources: Sequence[Source], resolved: Resolved[VideoPatchworkParams], context: Context) -> Iterator[Picture]:
     """The video texture, its cells over time, the average image, and the crop."""
     (source,) = sources
-    params, film, shape = resolved.params, source.clip.frames, resolved.shape
+    params, film, shape = resolved.params, source.require_clip().frames, resolved.shape
     context.progress("cells", 0)
     frame, painter = (_mosaic if params.arrangement == "mosaic" else _fixed)(film, shape, params)
     yield from textured(frame, shape, source, context)
     yield cells_cube(painter, shape, context)
     yield average_picture(film.mean(0, np.float32), context)
-    yield from crop_film(source, context)
+    yield from encode_crop(source, context)
 
 
 def _fixed(
@@ -149,7 +149,7 @@ VIDEO_PATCHWORK = Method(
     check=check,
     idle=idle_reach,
     run=run,
-    outputs=(*FILMS, *views("cells", deep=False), *views("average", of=()), *SHOWN_CLIP),
+    outputs=(*VIDEO_OUTPUTS, *views("cells", deep=False), *views("average", of=()), *SHOWN_CLIP),
     stages=lambda sizes, resolved: (("cells", 2), ("frames", 76), ("encoding", 8), ("cells", 4), ("crop", 10)),
     toroidal=lambda params: params.tileable,
     memory=memory,

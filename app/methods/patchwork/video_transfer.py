@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.methods.announced import FILMS, SHOWN_CLIP, views
 from app.methods.context import Context
 from app.methods.explanations.references import PATCHWORK
 from app.methods.explanations.video_transfer import EXPLANATION
 from app.methods.model import Method, Picture, Size, Slot, Source
-from app.methods.output.films import crop_film
 from app.methods.output.pictures import encode
+from app.methods.output.videos import encode_crop
+from app.methods.outputs import SHOWN_CLIP, VIDEO_OUTPUTS, views
 from app.methods.params import LoopParams, Resolved
 from app.methods.patchwork.limits import (
     Reached,
@@ -90,7 +90,7 @@ def memory(sizes: Sequence[Size], resolved: Resolved[VideoTransferParams]) -> in
 def run(sources: Sequence[Source], resolved: Resolved[VideoTransferParams], context: Context) -> Iterator[Picture]:
     """The pattern as a video texture, its cells over time, the average image, the clip and the pattern."""
     clip, pattern = sources
-    params, film, shape = resolved.params, clip.clip.frames, resolved.shape
+    params, film, shape = resolved.params, clip.require_clip().frames, resolved.shape
     context.progress("cells", 0)
     cells = jittered_cells(*shape[1:], grid=params.grid, sharpness=params.sharpness, tileable=False, seed=params.seed)
     average = film.mean(0, np.float32)
@@ -112,7 +112,7 @@ def run(sources: Sequence[Source], resolved: Resolved[VideoTransferParams], cont
     )
     yield average_picture(average, context)
     yield compared_pattern(wanted, params.rescale, PEAK, context)
-    yield from crop_film(clip, context)
+    yield from encode_crop(clip, context)
     yield encode("crop-2", "Pattern", pattern.pixels, pattern.peak, context)
 
 
@@ -155,7 +155,7 @@ VIDEO_TRANSFER = Method(
     idle=idle_reach,
     run=run,
     outputs=(
-        *FILMS,
+        *VIDEO_OUTPUTS,
         *views("cells", deep=False),
         *views("average", of=()),
         *views("pattern", of=("rescale",)),

@@ -7,7 +7,6 @@ from typing import Literal
 from pydantic import Field
 
 from app.errors import InvalidInputError
-from app.methods.announced import Announced, shown_inputs, texture, views
 from app.methods.context import Context
 from app.methods.explanations.heeger_bergen import EXPLANATION
 from app.methods.explanations.references import HEEGER_BERGEN as ARTICLE
@@ -15,6 +14,7 @@ from app.methods.explanations.references import IPOL_HEEGER_BERGEN, PERIODIC_PLU
 from app.methods.inputs import INPUTS, refuse_other_size
 from app.methods.model import Fact, Method, Picture, Size, Source
 from app.methods.output.pictures import crops, encode
+from app.methods.outputs import OutputSpec, shown_inputs, texture, views
 from app.methods.params import ADD_SMOOTH, ADVANCED, Resolved, StillParams
 from app.methods.pyramid.sub_bands import mosaic
 from app.methods.stages import Plan
@@ -176,9 +176,9 @@ _MATCHED = "scales", "orientations", "edges"
 _HISTORY = "iterations", *_MATCHED
 
 
-def _iteration(number: int) -> Announced:
+def _iteration(number: int) -> OutputSpec:
     name, words = f"iteration-{number}", f"“Iterations” is more than {number}"
-    return Announced(name, of=_HISTORY, given=lambda params, inputs: params.iterations > number, condition=words)
+    return OutputSpec(name, of=_HISTORY, applies=lambda params, inputs: params.iterations > number, condition=words)
 
 
 HEEGER_BERGEN = Method(

@@ -7,7 +7,6 @@ import numpy as np
 from pydantic import Field
 
 from app.errors import InvalidInputError
-from app.methods.announced import shown_inputs, texture, views
 from app.methods.context import Context
 from app.methods.explanations.efros_leung import EXPLANATION
 from app.methods.explanations.references import EFROS_LEUNG as EFROS_LEUNG_ARTICLE
@@ -15,6 +14,7 @@ from app.methods.explanations.references import IPOL_EFROS_LEUNG
 from app.methods.inputs import INPUTS
 from app.methods.model import Fact, Method, Picture, Size, Source
 from app.methods.output.pictures import coordinate_colours, crops, encode
+from app.methods.outputs import shown_inputs, texture, views
 from app.methods.params import Resolved, StillParams
 from app.synthesis.sampling.efros_leung import border_share, efros_leung, verbatim_share
 

@@ -6,9 +6,9 @@ from typing import Any, Literal, Self
 from pydantic import BaseModel, Field
 
 from app.experiments.model import Experiment, Output, Sample, Snapshot, Status
-from app.methods.announced import Announced
 from app.methods.effects import COMMON
 from app.methods.model import Method
+from app.methods.outputs import OutputSpec
 from app.web.api.bodies import Crop, TimeRange
 from app.web.api.environment import EnvironmentRecord
 
@@ -223,7 +223,7 @@ class AnnouncedRecord(Record):
     condition: str | None = Field(description="Where it is given; null where always.")
 
     @classmethod
-    def of(cls, output: Announced, method: Method) -> "AnnouncedRecord":
+    def of(cls, output: OutputSpec, method: Method) -> "AnnouncedRecord":
         return cls.from_source(
             output,
             depths=[8, 16] if output.deep else [8],

@@ -12,8 +12,8 @@ from starlette.responses import Response
 from app.errors import InvalidInputError
 from app.experiments.files.outputs import AnyFormat
 from app.images.crop import Frames, Rectangle
-from app.methods.announced import Announced
 from app.methods.effects import possible_output
+from app.methods.outputs import OutputSpec
 from app.methods.registry import METHODS
 from app.web.api.openapi import form_parameters, problems
 from app.web.api.records import API
@@ -181,7 +181,7 @@ def _read_arguments(request: Request, form: Form) -> dict[str, Any]:
     }
 
 
-def _choose_format(request: Request, output: Announced) -> AnyFormat | None:
+def _choose_format(request: Request, output: OutputSpec) -> AnyFormat | None:
     """What the caller likes best of those that the output comes in; None if it comes in one only."""
     if output.media_type not in (PNG, WEBM):
         return None

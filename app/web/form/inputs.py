@@ -9,7 +9,7 @@ from app.experiments.preparation import NewInput
 from app.images.crop import Frames, Rectangle
 from app.methods.model import Method, Slot
 from app.methods.registry import METHODS
-from app.numbers import plain, said, whole
+from app.numbers import plain, quote, whole
 from app.samples import BundledSample
 
 START = 512  # pixels of a side of the first crop, at most
@@ -130,7 +130,9 @@ def _find_sample(
 
 def _read_crop(sample: Sample, numbers: list[str], field: str, errors: dict[str, str]) -> Rectangle | None:
     wrong = [
-        f"got {said(text)} for {side}" for side, text in zip(SIDES, numbers, strict=True) if _parse_number(text) is None
+        f"got {quote(text)} for {side}"
+        for side, text in zip(SIDES, numbers, strict=True)
+        if _parse_number(text) is None
     ]
     if wrong:
         errors[field] = f"{FOUR_NUMBERS}; {', '.join(wrong)}." + (OR_NONE if field != "crop" else "")
@@ -157,7 +159,7 @@ def _read_frames(
         return None
     first, count = (values.get(name, "").strip() for name in time_names(number))
     given = {"the first frame": first or "0"} | ({"their number": count} if slot.moving and count else {})
-    wrong = [f"got {said(text)} for {name}" for name, text in given.items() if _parse_number(text) is None]
+    wrong = [f"got {quote(text)} for {name}" for name, text in given.items() if _parse_number(text) is None]
     if wrong:
         errors[f"{prefix(number)}time"] = f"{TWO_NUMBERS if slot.moving else ONE_NUMBER}; {', '.join(wrong)}."
         return None

@@ -9,7 +9,7 @@ from pydantic import ValidationError
 from app.methods.fields import FormField, fields, requirement
 from app.methods.model import Method
 from app.methods.params import LoopParams, MovingParams, SeamlessParams, StillParams
-from app.numbers import plain, said
+from app.numbers import plain, quote
 
 SHARED = tuple(StillParams.model_fields)  # width, height and seed: asked once for all methods
 FAMILIES = (
@@ -84,7 +84,7 @@ def parse(method: Method, submitted: Mapping[str, str]) -> Parsed:
         problems = {str(problem["loc"][0]): problem["msg"] for problem in error.errors() if problem["loc"]}
         wrong |= {name: requirement(entries[name], problem) for name, problem in problems.items() if name in entries}
     names = {entry.name: form_name(method, entry.name) for entry in declared if entry.name in wrong}
-    errors = {at: f"{wrong[name].removesuffix('.')}; got {said(submitted[at].strip())}." for name, at in names.items()}
+    errors = {at: f"{wrong[name].removesuffix('.')}; got {quote(submitted[at].strip())}." for name, at in names.items()}
     return Parsed(errors=errors) if errors else Parsed(parameters)
 
 

@@ -9,8 +9,8 @@ from imagecodecs import png_decode
 from app.images.video.reader import read_video
 from app.methods.context import Context
 from app.methods.gaussian.video_rpn import VIDEO_RPN
-from app.methods.model import Film, Size, Source
-from app.methods.output.films import film_memory
+from app.methods.model import Clip, Size, Source
+from app.methods.output.videos import encoding_bytes
 from app.synthesis.gaussian.video_rpn import VideoNoiseField, video_rpn
 from app.synthesis.parallel import Team
 
@@ -18,7 +18,7 @@ from app.synthesis.parallel import Team
 def clip(frames=6, height=40, width=48, channels=3, still=False):
     rng = np.random.default_rng(1)
     grain = rng.integers(60, 160, (1 if still else frames, height, width, channels), np.uint8)
-    return Source(grain[0].astype(np.float32), 255, Film(np.repeat(grain, frames // len(grain), axis=0), 12.0))
+    return Source(grain[0].astype(np.float32), 255, Clip(np.repeat(grain, frames // len(grain), axis=0), 12.0))
 
 
 def run(source, scratch, threads=2, **parameters):
@@ -46,7 +46,7 @@ def test_the_decoded_texture_is_the_noise_rounded(tmp_path, channels):
     source = clip(channels=channels)
     texture = run(source, tmp_path, seed=3)["texture"]
     decoded = np.stack(list(read_video(texture.data)))
-    expected = np.clip(np.rint(video_rpn(source.film.frames, seed=3)), 0, 255)
+    expected = np.clip(np.rint(video_rpn(source.clip.frames, seed=3)), 0, 255)
     assert (decoded == expected).all()
 
 
@@ -58,7 +58,7 @@ def test_the_average_is_the_crops_and_says_what_stands_still(tmp_path):
     for still, expected in ((True, 100), (False, 100 / 6)):
         source = clip(still=still)
         average = run(source, tmp_path)["average"]
-        shown = np.rint(source.film.frames.mean(axis=0))
+        shown = np.rint(source.clip.frames.mean(axis=0))
         assert np.abs(png_decode(average.data) - shown).max() <= 1
         assert average.facts[0].value == pytest.approx(expected, rel=0.1)
 
@@ -81,7 +81,7 @@ def test_a_clip_that_stands_still_gives_a_video_that_does(tmp_path):
     ],
 )
 def test_the_memory_that_it_declares_is_what_it_takes_at_most_and_not_far_above(film, texture):
-    """What the encoders need beside arrays is declared by `film_memory` and not seen here."""
+    """What the encoders need beside arrays is declared by `encoding_bytes` and not seen here."""
     frames = np.random.default_rng(0).integers(0, 256, film, np.uint8)
     tracemalloc.start()
     try:
@@ -95,7 +95,7 @@ def test_the_memory_that_it_declares_is_what_it_takes_at_most_and_not_far_above(
     params = VIDEO_RPN.params(frames=texture[0], height=texture[1], width=texture[2])
     width, height = max(film[2], texture[2]), max(film[1], texture[1])
     declared = VIDEO_RPN.memory_of([Size(film[2], film[1], film[3], film[0])], params)
-    assert 0.4 < peak / (declared - film_memory(width, height, film[3])) < 1
+    assert 0.4 < peak / (declared - encoding_bytes(width, height, film[3])) < 1
 
 
 def test_the_memory_of_the_clips_own_size_is_that_of_no_size_asked_for():

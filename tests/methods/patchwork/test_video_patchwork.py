@@ -9,8 +9,8 @@ import pytest
 
 from app.errors import InvalidInputError
 from app.images.video.reader import read_video
-from app.methods.model import Film, Size
-from app.methods.output.films import film_memory
+from app.methods.model import Clip, Size
+from app.methods.output.videos import encoding_bytes
 from app.methods.patchwork.video_patchwork import VIDEO_PATCHWORK
 from tests.methods.runs import a_clip, run_small
 
@@ -20,8 +20,8 @@ ARRANGED = pytest.mark.parametrize("arrangement", ["fixed", "mosaic"])
 def a_still_clip():
     """A clip whose frames are all the first."""
     source = a_clip()
-    assert source.film is not None
-    return replace(source, film=Film(np.repeat(source.film.frames[:1], 12, 0), 12.0))
+    assert source.clip is not None
+    return replace(source, film=Clip(np.repeat(source.clip.frames[:1], 12, 0), 12.0))
 
 
 def texture(source, scratch, **parameters):
@@ -82,12 +82,14 @@ def test_its_defaults_suit_a_clip_of_three_seconds(arrangement):
 @ARRANGED
 @pytest.mark.parametrize("sharpness", [1, 3, 6])
 def test_the_memory_it_asks_for_covers_what_it_takes(arrangement, sharpness, tmp_path, monkeypatch):
-    """Without the encoders, whose need is said by `film_memory`. The clip is there before, and is asked for too."""
-    monkeypatch.setattr("app.methods.patchwork.pictures.texture_film", lambda frames, **shape: iter([list(frames)][1:]))
+    """Without the encoders, whose need is said by `encoding_bytes`. The clip is there before, and is asked for too."""
+    monkeypatch.setattr(
+        "app.methods.patchwork.pictures.encode_texture", lambda frames, **shape: iter([list(frames)][1:])
+    )
     source = a_clip(height=150, width=160, frames=24)
     params = {"width": 200, "height": 220, "frames": 4, "grid": 20, "interval": 6, "arrangement": arrangement}
     params["sharpness"] = sharpness
-    asked = VIDEO_PATCHWORK.memory_of([source.size], VIDEO_PATCHWORK.params(**params)) - film_memory(200, 220, 3)
+    asked = VIDEO_PATCHWORK.memory_of([source.size], VIDEO_PATCHWORK.params(**params)) - encoding_bytes(200, 220, 3)
     tracemalloc.start()
     try:
         assert next(run_small(VIDEO_PATCHWORK, [source], scratch=tmp_path, **params)).name == "cells"

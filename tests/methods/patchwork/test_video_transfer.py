@@ -8,7 +8,7 @@ from imagecodecs import png_decode
 
 from app.errors import InvalidInputError
 from app.images.video.reader import read_video
-from app.methods.model import Film, Size, Source
+from app.methods.model import Clip, Size, Source
 from app.methods.patchwork.transfer import TRANSFER
 from app.methods.patchwork.video_transfer import VIDEO_TRANSFER
 from tests.methods.runs import a_clip, a_crop, run_small
@@ -25,7 +25,7 @@ def halves():
     rng = np.random.default_rng(1)
     levels = np.where(np.arange(96) < 48, 80, 160)[None, None, :, None]
     film = (levels + rng.integers(-30, 31, (12, 60, 96, 3))).astype(np.uint8)
-    return Source(film[0].astype(np.float32), 255, Film(film, 12.0))
+    return Source(film[0].astype(np.float32), 255, Clip(film, 12.0))
 
 
 def test_light_and_dark_are_where_the_pattern_has_them_in_every_frame(tmp_path):

@@ -13,8 +13,8 @@ from PIL import Image
 from app.images.convert import GROUND
 from app.images.video.reader import read_video
 from app.methods.context import Context
-from app.methods.model import Film, Source
-from app.methods.output.films import crop_film, film_memory, texture_film
+from app.methods.model import Clip, Source
+from app.methods.output.videos import encode_crop, encode_texture, encoding_bytes
 from tests.images.clips import psnr
 from tests.images.video.memory import printed
 from tests.images.video.natural import natural_film
@@ -28,11 +28,11 @@ def context(scratch: Path, progress=lambda stage, part: None) -> Context:
 def texture(frames, shape, scratch: Path, progress=lambda stage, part: None):
     count, height, width, channels = shape
     size = {"width": width, "height": height, "channels": channels, "count": count}
-    return texture_film(frames, **size, rate=24.0, context=context(scratch, progress))
+    return encode_texture(frames, **size, rate=24.0, context=context(scratch, progress))
 
 
 def source(film: np.ndarray, rate: float = 24.0) -> Source:
-    return Source(film[0].astype(np.float32), 255, Film(film, rate))
+    return Source(film[0].astype(np.float32), 255, Clip(film, rate))
 
 
 def nothing_stays(scratch: Path) -> bool:
@@ -111,7 +111,7 @@ def test_an_input_is_shown_exactly_as_it_was_cropped(tmp_path):
     film = natural_film(9, 40, 54)
     calls = []
     progress = lambda stage, part: calls.append((stage, part))  # noqa: E731
-    made = {picture.name: picture for picture in crop_film(source(film, 24000 / 1001), context(tmp_path, progress))}
+    made = {picture.name: picture for picture in encode_crop(source(film, 24000 / 1001), context(tmp_path, progress))}
     assert list(made) == ["crop", "crop-mp4", "crop-cube"]
     assert {picture.kind for picture in made.values()} == {"view"}
     assert (made["crop"].frames, made["crop"].rate) == (9, 24000 / 1001)
@@ -150,7 +150,7 @@ def test_progress_stops_the_encoders_too(tmp_path):
     stops_at(1, lambda progress: list(texture(iter(film), film.shape, tmp_path, progress)))
     assert nothing_stays(tmp_path)
     for count in (1, 4, 7):
-        stops_at(count, lambda progress: list(crop_film(source(film), context(tmp_path, progress))))
+        stops_at(count, lambda progress: list(encode_crop(source(film), context(tmp_path, progress))))
         assert nothing_stays(tmp_path)
 
 
@@ -158,14 +158,14 @@ GROWTH = """
 import sys
 import numpy as np
 from pathlib import Path
-from app.methods.output.films import texture_film
+from app.methods.output.videos import encode_texture
 from app.methods.context import Context
 side, channels, scratch = int(sys.argv[1]), int(sys.argv[2]), Path(sys.argv[3])
 noise = np.random.default_rng(0).integers(0, 256, (side + 16, side + 16, channels), dtype=np.uint8)
 frames = (noise[t : t + side, t : t + side] for t in range(16))
 before = peak()
 size = {"width": side, "height": side, "channels": channels, "count": 16}
-list(texture_film(frames, **size, rate=24.0, context=Context(8, 2, lambda stage, part: None, scratch)))
+list(encode_texture(frames, **size, rate=24.0, context=Context(8, 2, lambda stage, part: None, scratch)))
 print(peak() - before)
 """
 
@@ -174,4 +174,4 @@ print(peak() - before)
 @pytest.mark.parametrize("channels", [1, 3])
 def test_the_memory_it_says_is_enough_and_not_far_too_much(tmp_path, channels):
     grown = printed(GROWTH, 512, channels, tmp_path)
-    assert grown < film_memory(512, 512, channels) < 2 * grown
+    assert grown < encoding_bytes(512, 512, channels) < 2 * grown

@@ -1,4 +1,4 @@
-"""`microtexture methods METHOD`: what a method takes and gives, as tables."""
+"""Tables of a method's parameters and outputs, for `microtexture methods METHOD`."""
 
 from rich.console import Console
 from rich.table import Table
@@ -8,7 +8,7 @@ from app.methods.model import Method
 from app.methods.params import MovingParams
 
 
-def tell(method: Method, console: Console) -> None:
+def describe(method: Method, console: Console) -> None:
     """Print a method's parameters, and its outputs with the parameters of its own that change each."""
     console.print(f"{method.title}: {method.summary}\n", highlight=False)
     table = _table("parameter", "default", "what it is")

@@ -7,7 +7,7 @@ import pytest
 
 from app.errors import CancelledError
 from app.images.video.reader import read_video
-from app.methods.model import Film, Method, Picture, Source
+from app.methods.model import Clip, Method, Picture, Source
 from app.methods.registry import METHODS
 from tests.methods.runs import run_small, sources_for
 
@@ -38,8 +38,8 @@ def test_its_files_come_in_order_and_only_the_webm_is_the_texture(method: Method
 def test_the_crop_is_the_clip_itself(method: Method, tmp_path: Path) -> None:
     sources = sources_for(method)
     crop = next(picture for picture in run_small(method, sources, scratch=tmp_path) if picture.name == "crop")
-    assert sources[0].film is not None
-    assert np.array_equal(film_of(crop), sources[0].film.frames)
+    assert sources[0].clip is not None
+    assert np.array_equal(film_of(crop), sources[0].clip.frames)
 
 
 @EVERY
@@ -87,7 +87,7 @@ def test_what_the_progress_raises_ends_the_run_and_leaves_no_file(method: Method
 @EVERY
 def test_a_constant_clip_gives_that_constant(method: Method, tmp_path: Path) -> None:
     film = np.full((12, 48, 64, 3), (40, 120, 200), np.uint8)
-    constant = Source(film[0].astype(np.float32), 255, Film(film, 12.0))
+    constant = Source(film[0].astype(np.float32), 255, Clip(film, 12.0))
     frames = film_of(next(run_small(method, [constant] * len(method.inputs), scratch=tmp_path)))
     assert np.abs(frames.astype(int) - (40, 120, 200)).max() <= 1
 

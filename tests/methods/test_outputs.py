@@ -1,4 +1,4 @@
-"""What every method announces of its outputs before it runs is what comes of it."""
+"""Every output is declared before a run: what is declared is what comes of it."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path

@@ -34,12 +34,12 @@ BASE_BYTES, PIXEL_BYTES = 40_000_000, {1: 190, 3: 280}  # of a frame, by its cha
 CROP = (_File("crop", "Crop", "webm", "video/webm"), _File("crop-mp4", "Crop as MP4", "mp4", "video/mp4"))
 
 
-def film_memory(width: int, height: int, channels: int) -> int:
-    """Bytes that `texture_film` needs at its peak, whatever the number of frames."""
+def encoding_bytes(width: int, height: int, channels: int) -> int:
+    """Bytes that `encode_texture` needs at its peak, whatever the number of frames."""
     return BASE_BYTES + PIXEL_BYTES[channels] * width * height
 
 
-def texture_film(
+def encode_texture(
     frames: Iterable[NDArray[Any]], *, width: int, height: int, channels: int, count: int, rate: float, context: Context
 ) -> Iterator[Picture]:
     """Write a video texture as WebM, MP4, animated preview and video cube, in one pass over its frames.
@@ -69,9 +69,9 @@ def texture_film(
     yield _picture_of(cube, "cube", "Video cube")
 
 
-def crop_film(source: Source, context: Context) -> Iterator[Picture]:
+def encode_crop(source: Source, context: Context) -> Iterator[Picture]:
     """Write a moving input: ``crop`` (WebM), ``crop-mp4`` and ``crop-cube``; the stage is ``crop``."""
-    frames, rate = source.clip.frames, source.clip.rate
+    frames, rate = source.require_clip().frames, source.require_clip().rate
     count, height, width, channels = frames.shape
     size = width, height, channels, count
     cube = VideoCube(*size)
