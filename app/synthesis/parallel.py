@@ -96,7 +96,7 @@ class Work:
         Parameters
         ----------
         stage : str
-            What the progress calls this pass.
+            Name of this pass in the progress.
         task : callable ``(item)``
         items : iterable
 

@@ -215,7 +215,7 @@ class NoiseField:
             The planes, one for each channel, are (rows, width) float32, the mean included; each is computed when the
             sink takes it, and belongs to the sink.
         stage : str
-            What the progress calls this pass.
+            Name of this pass in the progress.
         """
 
         def transform(rows: tuple[int, int]) -> None:

@@ -65,7 +65,7 @@ def random_words(source: SFC64, height: int, block: Block) -> NDArray[np.uint16]
     source : SFC64
         One of `random_bits`; it moves on.
     height : int
-        Of the image, in pixels.
+        Height of the image, in pixels.
     block : tuple of int
 
     Returns

@@ -159,7 +159,7 @@ def adsn_of_spot(spot: Spot, seed: int, threads: int = 1, progress: Progress | N
     Parameters
     ----------
     spot : Spot
-        Of the texture's size.
+        A spot of the texture's size.
     seed : int
         Not negative.
     threads : int

@@ -243,7 +243,7 @@ def _report(progress: Progress | None, part: float) -> None:
 
 
 def _covariance(kernel: Real, area: int) -> Double:
-    """Of the colours of a kernel's texture of ``area`` pixels, whose mean is the sample's: (C, C)."""
+    """Compute the covariance (C, C) of the colours of a kernel's texture of ``area`` pixels."""
     sums = kernel.sum(axis=(2, 3), dtype=np.float64) / area
     found: Double = np.einsum("ajyx,bjyx->ab", kernel, kernel, dtype=np.float64) / area - sums @ sums.T
     return found

@@ -113,7 +113,7 @@ def dsn(spot: Spot, order: int, *, seed: int = 0, threads: int = 1, progress: Pr
     Parameters
     ----------
     spot : Spot
-        Of the texture's size: `microtexture.fourier.spot_noise.sample_spot`, or `standard_spot`.
+        A spot of the texture's size: `microtexture.fourier.spot_noise.sample_spot`, or `standard_spot`.
     order : int
         n, at least 1.
     seed : int
@@ -181,7 +181,7 @@ def standard_spot(
     Returns
     -------
     Spot
-        Of one channel.
+        A spot of one channel.
 
     Raises
     ------

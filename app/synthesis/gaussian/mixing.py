@@ -97,7 +97,7 @@ class Mixture:
             Not negative, of sum 1.
         sink : callable ``(first row, planes)``
         stage : str
-            What the progress calls this pass.
+            Name of this pass in the progress.
         """
 
         def transform(rows: tuple[int, int]) -> None:

@@ -99,7 +99,7 @@ def best_matches(
     peak : float
         Greatest value.
     candidates : int
-        How many places are drawn for each patch; 0, or as many as there are or more: all are compared.
+        Number of places that are drawn for each patch; 0, or as many as there are or more, compares all.
     seed : int
         Not negative; draws the candidates.
     work : Work

@@ -30,13 +30,13 @@ def match_cells(
     texture : ndarray of float32, shape (H', W', C)
         At least `microtexture.patchwork.jittered_cells.least_sample` pixels a side.
     pattern : ndarray of float32, shape (H, W, C)
-        Of the size of the cells' plane; values in the texture's unit.
+        The pattern, of the size of the cells' plane; values in the texture's unit.
     cells : Cells
-        Of a plane, not of a torus.
+        Cells of a plane, not of a torus.
     peak : float
         Greatest value of the texture; the least is 0.
     candidates : int
-        How many places are compared for each cell; 0: all. For one seed, the candidates of a smaller number are a
+        Number of places that are compared for each cell; 0 for all. For one seed, the candidates of a smaller number are a
         subset of those of a larger one.
     seed : int
         Not negative; draws the candidates.

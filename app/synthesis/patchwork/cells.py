@@ -66,13 +66,13 @@ class Cells:
     Parameters
     ----------
     height, width : int
-        Of the plane.
+        Size of the plane, in pixels.
     sharpness : float
         f.
     unit : float
         The spacing in pixels, in which distances are measured.
     count : int
-        Of cells.
+        Number of cells.
     centres : ndarray of int64, shape (N, 2)
         p_i as (y, x), N ≥ ``count``: centres outside the plane reach into it too.
     cell : ndarray of int64, shape (N,)

@@ -64,7 +64,7 @@ class Patchwork:
     h : ndarray of float32, shape (H, W, C)
         The sample.
     cells : Cells
-        Of the texture's size, with weights that end or that do not.
+        Cells of the texture's size, with weights that end or that do not.
     blend : {"deviation", "feather", "sharp"}
         Keep the standard deviation in the joins, feather them, or show at each pixel the cell of the nearest centre;
         "sharp" needs weights that end.

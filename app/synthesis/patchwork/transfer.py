@@ -98,16 +98,16 @@ def transfer(
     texture : ndarray of float32, shape (H', W', C)
         At least `microtexture.patchwork.jittered_cells.least_sample` pixels a side; values of [0, ``peak``].
     pattern : ndarray of float32, shape (H, W, C)
-        Of the size of the cells' plane; values in the texture's unit.
+        The pattern, of the size of the cells' plane; values in the texture's unit.
     cells : Cells
-        Of a plane, not of a torus, with weights that end.
+        Cells of a plane, not of a torus, with weights that end.
     reach : {"all", "near"}
         Whether all cells count at a pixel, or the weights end as they do for the search; see
         `microtexture.patchwork.unbounded_cells`.
     peak : float
         Greatest value of the texture.
     candidates : int
-        How many places of the texture, drawn at random, are compared for each cell; 0: all.
+        Number of places of the texture, drawn at random, that are compared for each cell; 0 for all.
     seed : int
         Not negative; draws the candidates.
     work : Work

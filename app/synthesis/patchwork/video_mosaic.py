@@ -166,7 +166,7 @@ class VideoMosaic:
         Parameters
         ----------
         number : int
-            Of the frame.
+            Number of the frame.
         window : Window
         colours : ndarray of float32, shape (cells, 3)
 

@@ -42,7 +42,7 @@ class Decomposition:
     Parameters
     ----------
     scales, orientations : int
-        Of the pyramid, each at least 1.
+        Scales and orientations of the pyramid, each at least 1.
     edges : {"periodic", "mirror"}
         How the sample's borders are made to match: take its periodic component, or put its mirror images beside it.
     """
@@ -123,7 +123,7 @@ class Synthesis:
     ----------
     sample : Sample
     pyramid : SteerablePyramid
-        Of the texture's size.
+        A pyramid of the texture's size.
     seed : int
         Not negative.
     work : Work
@@ -179,7 +179,7 @@ class Synthesis:
         Parameters
         ----------
         stage : str
-            What the progress calls it.
+            Name of this pass in the progress.
         channel : int
             Number of the principal component.
 
