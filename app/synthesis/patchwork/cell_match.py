@@ -36,8 +36,8 @@ def match_cells(
     peak : float
         Greatest value of the texture; the least is 0.
     candidates : int
-        Number of places that are compared for each cell; 0 for all. For one seed, the candidates of a smaller number are a
-        subset of those of a larger one.
+        Number of places that are compared for each cell; 0 for all. For one seed, the candidates of a smaller number
+        are a subset of those of a larger one.
     seed : int
         Not negative; draws the candidates.
     work : Work
