@@ -21,7 +21,7 @@ def a_still_clip():
     """A clip whose frames are all the first."""
     source = a_clip()
     assert source.clip is not None
-    return replace(source, film=Clip(np.repeat(source.clip.frames[:1], 12, 0), 12.0))
+    return replace(source, clip=Clip(np.repeat(source.clip.frames[:1], 12, 0), 12.0))
 
 
 def texture(source, scratch, **parameters):
