@@ -1,4 +1,4 @@
-"""Everything that is measured: ``make bench``."""
+"""All benchmarks, one after the other: ``make bench``."""
 
 from benchmarks import kernel, laboratory, patchwork, service, worker
 

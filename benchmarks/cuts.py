@@ -1,4 +1,4 @@
-"""What a texton that is cut to K × K pixels keeps of the colours: the program's way, and others that were tried.
+"""Colours of a texton cut to K × K pixels: what is kept of them by the program's way and by others that were tried.
 
 Every way gives a kernel of rows (channels) and columns (noises); all of them but the first are then given the
 covariance of the sample's colours by one matrix, so that they differ in the covariance of the colours of two places.
@@ -83,10 +83,10 @@ def smoothed_root(p: Complex, cut: int, reach: float) -> Real:
 def whitened(p: Complex, make: Callable[[Complex], Real]) -> Real:
     """The same for colours of covariance 1, and back."""
     values, axes = np.linalg.eigh(covariance(p[..., None])[0, 0])
-    made: Real = np.einsum(
+    adjusted: Real = np.einsum(
         "ab,yxbj->yxaj", (axes * np.sqrt(values)) @ axes.T, make(p @ (axes / np.sqrt(values)) @ axes.T)
     )
-    return made
+    return adjusted
 
 
 def covariance(spectrum: Complex) -> Real:
@@ -94,13 +94,15 @@ def covariance(spectrum: Complex) -> Real:
     return to_kernel(spectrum @ np.swapaxes(spectrum.conj(), -1, -2)) / SIDE**2
 
 
-def set_right(kernel: Real, wanted: Real) -> Real:
+def set_right(kernel: Real, target: Real) -> Real:
     """R t, see app.synthesis.gaussian.cut_texton."""
     values, axes = np.linalg.eigh(covariance(without_mean(kernel))[0, 0])
     half, back = (axes * np.sqrt(values)) @ axes.T, (axes / np.sqrt(values)) @ axes.T
-    values, axes = np.linalg.eigh(half @ wanted @ half)
-    made: Real = np.einsum("ab,yxbj->yxaj", back @ (axes * np.sqrt(np.clip(values, 0, None))) @ axes.T @ back, kernel)
-    return made
+    values, axes = np.linalg.eigh(half @ target @ half)
+    adjusted: Real = np.einsum(
+        "ab,yxbj->yxaj", back @ (axes * np.sqrt(np.clip(values, 0, None))) @ axes.T @ back, kernel
+    )
+    return adjusted
 
 
 def without_mean(kernel: Real) -> Complex:

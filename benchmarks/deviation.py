@@ -1,4 +1,4 @@
-"""How far patches are from the sums of all cells in double precision: ``python -m benchmarks.deviation``.
+"""Deviation of patches from the sums of all cells in double precision: ``python -m benchmarks.deviation``.
 
 Equations (1), (2) and (7) of Harrison's report as they stand, on bundled samples, against what methods make with all
 patches and with near ones: root mean square and maximum in levels of 255.
@@ -50,11 +50,11 @@ def patchworks(sharpness: float, tileable: bool) -> Made:
     sources = Patchwork(h, near, seed=1).sources
     expected = patchwork_sum(h, near, sources, tileable)
 
-    def made(reach: Reach) -> tuple[Double, Double]:
+    def synthesize(reach: Reach) -> tuple[Double, Double]:
         work = Patchwork(h, cells_with_reach(near, reach, tileable=tileable), seed=1)
         return work.rows(0, SIDE).transpose(1, 2, 0).astype(np.float64), expected
 
-    return made
+    return synthesize
 
 
 def transfers(sharpness: float) -> Made:
@@ -64,7 +64,7 @@ def transfers(sharpness: float) -> Made:
     near = cells_of(PAINTED, PAINTED_GRID, sharpness, False)
     sums: list[Double] = []
 
-    def made(reach: Reach) -> tuple[Double, Double]:
+    def synthesize(reach: Reach) -> tuple[Double, Double]:
         with Team(THREADS) as team:
             work = Work(team, lambda stage, part: None)
             found = transfer(texture, pattern, near, reach=reach, peak=255, candidates=200, seed=1, work=work)
@@ -72,25 +72,25 @@ def transfers(sharpness: float) -> Made:
             sums.append(transfer_sum(texture, near, found.matches.places)[0].clip(0, 255))
         return found.output.astype(np.float64), sums[0]
 
-    return made
+    return synthesize
 
 
 def frames(sharpness: float, local: bool) -> Made:
     """A frame of a video patchwork or transfer of a clip that stands still, and its sum."""
-    film = np.repeat(crop("sand_under_water", 0, 0, 320)[None].astype(np.uint8), 6, 0)
+    video = np.repeat(crop("sand_under_water", 0, 0, 320)[None].astype(np.uint8), 6, 0)
     near = cells_of(PAINTED, PAINTED_GRID, sharpness, not local)
     sources = near.sources(320, 320, 1)
-    mean = film[0].mean((0, 1), np.float64)
-    total = transfer_sum(film[0], near, sources)[0] if local else patchwork_sum(film[0], near, sources, True, mean)
+    mean = video[0].mean((0, 1), np.float64)
+    total = transfer_sum(video[0], near, sources)[0] if local else patchwork_sum(video[0], near, sources, True, mean)
     means = None if local else np.tile(mean.astype(np.float32), (near.count, 1))
 
-    def made(reach: Reach) -> tuple[Double, Double]:
+    def synthesize(reach: Reach) -> tuple[Double, Double]:
         cells = cells_with_reach(near, reach, tileable=not local)
         transitions = Transitions(near.count, 6, 6, 2, loop=True, rng=np.random.default_rng(0))
-        work = VideoPatchwork(PaddedClip(film, cells.margin(sources, 320, 320)), cells, sources, transitions, means)
+        work = VideoPatchwork(PaddedClip(video, cells.margin(sources, 320, 320)), cells, sources, transitions, means)
         return work.frame(3).astype(np.float64), total
 
-    return made
+    return synthesize
 
 
 CASES: dict[str, Callable[[float], Made]] = {
@@ -108,10 +108,10 @@ def main() -> None:
     print("rms and maximum, in levels: near patches; all patches; deviation of the sum itself")
     for name, case in CASES.items():
         for sharpness in SHARPNESSES:
-            made = case(sharpness)
+            synthesize = case(sharpness)
             found = []
             for reach in ("near", "all"):
-                texture, expected = made(reach)
+                texture, expected = synthesize(reach)
                 off = np.abs(texture - expected)
                 found.append(f"{np.sqrt(np.square(off).mean()):7.3f} {off.max():7.2f}")
             print(f"{name:26} f = {sharpness:g}  {'   '.join(found)}   {expected.std():5.1f}", flush=True)

@@ -1,4 +1,4 @@
-"""How fast and how small the synthesis is: ``python -m benchmarks.kernel``.
+"""Time and memory of the synthesis: ``python -m benchmarks.kernel``.
 
 Every figure is a ratio of two things timed in turn in one run, with two threads, RGB and float32. *Pair* is the bare
 `scipy.fft` real forward and inverse transforms of the texture's size and channels.
@@ -101,10 +101,10 @@ def _status(field: str) -> int:
 
 
 def _line(name: str, aim: float | None, ratio: Ratio) -> None:
-    wanted = "–" if aim is None else f"≤ {aim:.2f}"
+    aim_text = "–" if aim is None else f"≤ {aim:.2f}"
     verdict = "" if aim is None else "ok" if ratio.median <= aim else "MISSED"
     print(
-        f"{name:44} {ratio.median:7.2f}  {ratio.least:5.2f}–{ratio.greatest:5.2f}  {wanted:7} {verdict:7}"
+        f"{name:44} {ratio.median:7.2f}  {ratio.least:5.2f}–{ratio.greatest:5.2f}  {aim_text:7} {verdict:7}"
         f"{ratio.first * 1e3:8.1f} ÷ {ratio.second * 1e3:6.1f} ms",
         flush=True,
     )

@@ -1,4 +1,4 @@
-"""How fast and how small the laboratory's methods are: ``python -m benchmarks.laboratory``.
+"""Time and memory of the laboratory's methods: ``python -m benchmarks.laboratory``.
 
 A method's whole texture, PNG included, is timed in turn with its floor: the bare transforms, or for Efros–Leung the
 bare matrix product, that its algorithm cannot do without. Two threads, RGB, float32.

@@ -1,4 +1,4 @@
-"""How well the structure index tells micro-textures: ``python -m benchmarks.meter`` prints one table.
+"""Accuracy of the structure index in telling micro-textures: ``python -m benchmarks.meter`` prints one table.
 
 Crops of 256² of the bundled photographs; a photograph counts as one, however many crops it gives. Micro-textures
 against macro-textures and what is structured. Three more columns ask the same of photographs halved in size, with what

@@ -1,7 +1,7 @@
-"""How fast and how small patchwork and the video methods are: ``python -m benchmarks.patchwork``.
+"""Time and memory of patchwork and the video methods: ``python -m benchmarks.patchwork``.
 
 Stills are timed in turn with what numpy takes to copy and scale as many float32 values nine times; videos, from their
-clip to WebM, MP4, preview and cube, with writing those files of frames that are there already. Two threads, RGB.
+clip to WebM, MP4, preview and cube, with writing those files from existing frames. Two threads, RGB.
 """
 
 import argparse
@@ -72,15 +72,15 @@ def scratch() -> Iterator[Context]:
 
 
 def pictures(name: str, frames: int, context: Context) -> Iterator[Picture]:
-    """What a video method makes of the clip; the pattern is a still of noise."""
+    """Run a video method on the clip; the pattern, where it takes one, is a still of noise."""
     entry = method(name)
     sources = [clip(), Source(sample(320), 255)][: len(entry.inputs)]
     params = entry.params.model_validate({"width": 320, "height": 320, "frames": frames})
     return entry.pictures(sources, params, context)
 
 
-def film(name: str, frames: int) -> Callable[[], None]:
-    """A video method from its clip to its files."""
+def video(name: str, frames: int) -> Callable[[], None]:
+    """Run a video method from its clip to its files."""
 
     def run() -> None:
         with scratch() as context:
@@ -90,7 +90,7 @@ def film(name: str, frames: int) -> Callable[[], None]:
     return run
 
 
-def made(name: str, frames: int) -> NDArray[np.uint8]:
+def make_frames(name: str, frames: int) -> NDArray[np.uint8]:
     """The frames that a video method makes."""
     with scratch() as context:
         texture = next(pictures(name, frames, context))
@@ -119,10 +119,10 @@ def memory(*case: str) -> float:
 
 def line(name: str, ratio: Ratio, pixels: int, megabytes: str, aim: float | None = None) -> None:
     """Print one line of the table."""
-    wanted = "–" if aim is None else f"≤ {aim:g}"
+    aim_text = "–" if aim is None else f"≤ {aim:g}"
     verdict = "" if aim is None else "ok" if ratio.median <= aim else "MISSED"
     print(
-        f"{name:44} {ratio.median:7.2f}  {ratio.least:5.2f}–{ratio.greatest:5.2f}  {wanted:7} {verdict:7}"
+        f"{name:44} {ratio.median:7.2f}  {ratio.least:5.2f}–{ratio.greatest:5.2f}  {aim_text:7} {verdict:7}"
         f"{ratio.first * 1e3:8.0f} ÷ {ratio.second * 1e3:6.0f} ms {pixels / ratio.first / 1e6:7.2f} MP/s  {megabytes}",
         flush=True,
     )
@@ -136,7 +136,7 @@ def main() -> None:
     options = parser.parse_args()
     if options.memory_of:
         name, size = options.memory_of[0], int(options.memory_of[1])
-        print(above_idle(film(name, size) if name in VIDEOS else still(name, size, 512)))
+        print(above_idle(video(name, size) if name in VIDEOS else still(name, size, 512)))
         return
     print(f"{THREADS} threads, RGB; ratio: median, least–greatest; aim; median times; speed; peak memory above idle")
     arrays = partial(patchwork, sample(512), 2048, 2048, seed=1, threads=THREADS)
@@ -161,8 +161,8 @@ def main() -> None:
     ratio = alternate(still("transfer", 512, 512), copies(512), options.rounds)
     line(f"transfer of 512² onto 512², PNG ÷ {COPIES} copies", ratio, 512**2, f"{memory('transfer', '512'):.0f} MB")
     for name in VIDEOS:
-        frames = made(name, 72)
-        ratio = alternate(film(name, 72), written(frames), max(2, options.rounds // 2))
+        frames = make_frames(name, 72)
+        ratio = alternate(video(name, 72), written(frames), max(2, options.rounds // 2))
         needs = f"{memory(name, '72'):.0f} MB, 288 frames {memory(name, '288'):.0f} MB"
         line(f"{name} 320², 72 frames ÷ its files alone", ratio, 72 * 320**2, needs)
 

@@ -1,4 +1,4 @@
-"""A service of its own for a measurement: a new process on a free port of the loopback."""
+"""Service process for a measurement: a new one on a free port of the loopback interface."""
 
 import os
 import socket

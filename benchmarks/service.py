@@ -1,4 +1,4 @@
-"""What the service adds to the methods: ``python -m benchmarks.service``.
+"""Overhead of the service over the methods: ``python -m benchmarks.service``.
 
 A service is started on the loopback with the settings of the environment, and driven over REST.
 """
@@ -47,8 +47,8 @@ def directly(photo: Path, seed: int, threads: int) -> int:
     rpn = method("rpn")
     source = Source(read_crop(photo, CROP), 255)
     context = Context(8, threads, lambda stage, fraction: None)
-    made = rpn.pictures([source], rpn.params(seed=seed), context)
-    return sum(len(picture.data) for picture in made if isinstance(picture.data, bytes))
+    pictures = rpn.pictures([source], rpn.params(seed=seed), context)
+    return sum(len(picture.data) for picture in pictures if isinstance(picture.data, bytes))
 
 
 def kernel(photo: Path, seed: int, threads: int) -> None:
@@ -61,10 +61,10 @@ def kernel(photo: Path, seed: int, threads: int) -> None:
 def line(name: str, value: float, unit: str, aim: float | None = None, *, least: bool = False, note: str = "") -> None:
     """Print one line of the table."""
     sign = "≥" if least else "≤"
-    wanted = "–" if aim is None else f"{sign} {aim:g}"
+    aim_text = "–" if aim is None else f"{sign} {aim:g}"
     met = aim is not None and (value >= aim if least else value <= aim)
     verdict = "" if aim is None else "ok" if met else "MISSED"
-    print(f"{name:52} {value:8.2f} {unit:4} {wanted:8} {verdict:7} {note}", flush=True)
+    print(f"{name:52} {value:8.2f} {unit:4} {aim_text:8} {verdict:7} {note}", flush=True)
 
 
 def overhead(service: Served, photo: Path, threads: int) -> None:

@@ -1,4 +1,4 @@
-"""Ratios of two run times on a machine whose speed drifts: both timed in turn, and the median of the ratios taken."""
+"""Ratios of run times on a machine whose speed drifts: two calls are timed in turn, and the median ratio is taken."""
 
 import statistics
 import time

@@ -1,4 +1,4 @@
-"""What a worker process makes of the kernel: ``python -m benchmarks.worker``.
+"""Overhead of a worker process over the kernel: ``python -m benchmarks.worker``.
 
 The same texture is computed in turn by a job of the engine, in its worker, and by a call in this process, and both are
 timed inside. Page faults are those of the worker while the job runs: pages of 4 KiB that the system had to put there.

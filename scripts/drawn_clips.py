@@ -1,4 +1,4 @@
-"""Make the bundled clips: real input for the methods of moving textures, each from a photograph or from noise.
+"""Rendering of the bundled clips: real input for the video methods, each from a photograph or from noise.
 
 Usage: drawn_clips.py [DIRECTORY [NAME …]]. Each is a function of nothing but a bundled photograph and the seeds below:
 anybody can make it again.
@@ -174,7 +174,7 @@ def _look(splines: Real, y: Real, x: Real, mode: str = "mirror") -> Real:
 
 
 def write(path: Path, frames: Iterator[Real]) -> None:
-    """An H.264 film that every browser plays."""
+    """Write an H.264 video that every browser plays."""
     with av.open(str(path), "w") as container:
         stream = container.add_stream("libx264", rate=RATE, options={"crf": "16", "preset": "slow"})
         stream.width = stream.height = SIDE

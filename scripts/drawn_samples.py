@@ -1,4 +1,4 @@
-"""Draw the bundled samples that no photograph gives: ours, in the public domain (CC0).
+"""Drawing of the bundled samples that no photograph gives: ours, in the public domain (CC0).
 
 Usage: drawn_samples.py [DIRECTORY]. Each is a function of nothing but the seeds below: anybody can make it again.
 """

@@ -1,4 +1,4 @@
-"""Make docs/gallery.png: an experiment's page, as a browser shows it. ``make readme-picture``."""
+"""Screenshot of an experiment's page for the README, docs/gallery.png: ``make readme-picture``."""
 
 import os
 import shutil
