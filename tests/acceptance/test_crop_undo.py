@@ -59,7 +59,7 @@ def test_undo_takes_back_the_last_change(visitors: Any, change: str, by: str) ->
     assert box_of(page) == pytest.approx([100, 100, 200, 160], abs=0.1)
     expect(page.locator("#crop-size")).to_contain_text("200 × 160 of 640 × 427")
     assert [page.input_value("#width"), page.input_value("#height")] == ["400", "320"]
-    page.wait_for_function("() => location.search.includes('crop=100,100,200,160')")
+    page.wait_for_function("() => location.search.includes('crop.x=100&crop.y=100&crop.width=200&crop.height=160')")
     expect(undo).to_have_attribute("aria-disabled", "true")
     if by == "button":
         page.get_by_role("button", name="Redo").click()

@@ -33,7 +33,7 @@ def test_a_decimal_comma_is_said_back_as_a_point(page: Page, site: Any, typed: s
     type_over(page, "#rpn-alpha", typed)
     page.keyboard.press("Tab")
     expect(page.locator("#rpn-alpha")).to_have_value(said)
-    expect(page).to_have_url(re.compile(rf"[?&]alpha={re.escape(said)}(&|$)"))
+    expect(page).to_have_url(re.compile(rf"[?&]rpn\.alpha={re.escape(said)}(&|$)"))
     page.get_by_role("button", name="Synthesise").click()
     page.wait_for_url("**/experiments/*")
     record = site.client.get("/api/v1" + page.url.removeprefix(site.url)).json()

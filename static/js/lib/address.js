@@ -1,49 +1,60 @@
-// The address of a form: a sample's page with what is filled in, so that Back, reload and a bookmark find it as it was.
-// What is as the form begins with is left out.
-
-/** @typedef {{ sample: string, crop: string, time: string }} Input crop as x,y,width,height, time as first,count */
+// The query string of a form: its fields by their own names, as they are submitted, without those that are as the form begins
+// with them. It opens the page as it is: Back, reload and a bookmark find it so. app/web/form/address.py reads it, and writes
+// the same.
 
 /**
- * @typedef {object} Draft
- * @property {string} method
- * @property {Input[]} inputs of a method that takes several, all of them; an optional one has no sample
- * @property {string} size times the crop's, or "free"
- * @property {string} width if it is free
- * @property {string} height
- * @property {string} seed
- * @property {[name: string, value: string][]} parameters that are not what they begin with
+ * A field of the form.
+ *
+ * @typedef {object} Field
+ * @property {string} name
+ * @property {string} value of a switch "on" or nothing
+ * @property {string | undefined} [initial] what it begins with; without it the field is always written
  */
 
-const ORDINALS = ["first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth"];
+/**
+ * What the form asks for the chosen method.
+ *
+ * @typedef {object} Asked
+ * @property {number} inputs how many samples it takes at most
+ * @property {string[]} lacks names of parameters that other methods share and this one has not
+ */
+
+const READABLE = /%2C|%3A|%40/g;
+const INPUT = /^(input-(\d+)\.)(.+)$/;
 
 /**
- * A time range as the address has it: nothing of what is left empty, or is all of the clip.
+ * Write a form as the query that opens it again.
+ *
+ * @param {Field[]} fields in the order of the form, the chosen method among them
+ * @param {Asked} asked
+ */
+export function queryOf(fields, { inputs, lacks }) {
+  const values = new Map(fields.map(({ name, value }) => [name, value]));
+  const method = values.get("method") ?? "";
+
+  /** @param {string} name */
+  function counts(name) {
+    const [, prefix, number, part] = INPUT.exec(name) ?? [];
+    if (prefix) return Number(number) <= inputs && (part === "sample" || Boolean(values.get(`${prefix}sample`)));
+    if (/^(crop|time)\./.test(name)) return true;
+    if (name.includes(".")) return name.startsWith(`${method}.`);
+    if (name === "width" || name === "height") return values.get("size") === "free";
+    return name !== "method" && !lacks.includes(name);
+  }
+
+  const query = new URLSearchParams({ method });
+  for (const { name, value, initial } of fields) if (counts(name) && value !== initial) query.append(name, value);
+  return query.toString().replace(READABLE, decodeURIComponent);
+}
+
+/**
+ * A time range as the form submits it: nothing where it is all of the clip.
  *
  * @param {string} first
  * @param {string} count
  * @param {string} frames of the clip
+ * @returns {[first: string, count: string]}
  */
-export function timeOf(first, count, frames) {
-  const range = `${first},${count}`;
-  return range === "," || range === `0,${frames}` ? "" : range;
-}
-
-/** @param {Draft} draft */
-export function addressOf({ method, inputs, size, width, height, seed, parameters }) {
-  const [input, ...further] = inputs;
-  if (!input) throw new RangeError("a form has an input");
-  const query = new URLSearchParams({ method, crop: input.crop });
-  if (input.time) query.set("time", input.time);
-  further.forEach(({ sample, crop, time }, index) => {
-    if (sample) query.set(ORDINALS[index + 1] ?? "", `${sample}:${crop}${time && `@${time}`}`);
-  });
-  if (size !== "1") query.set("size", size);
-  if (size === "free") {
-    if (width) query.set("width", width);
-    if (height) query.set("height", height);
-  }
-  if (seed) query.set("seed", seed);
-  for (const [name, value] of parameters) query.set(name, value);
-  const text = query.toString().replace(/%2C|%3A|%40/g, decodeURIComponent);
-  return `/samples/${encodeURIComponent(input.sample)}?${text}`;
+export function shorten(first, count, frames) {
+  return (first || "0") === "0" && count === frames ? ["", ""] : [first, count];
 }

@@ -1,14 +1,15 @@
 // The parameters beside the photograph: sizes that follow the crop, new seeds, and an address that keeps all of it.
 
 import { parse } from "../crop/rectangle.js";
-import { addressOf, timeOf } from "../lib/address.js";
-import { find, seek } from "../lib/dom.js";
+import { queryOf, shorten } from "../lib/address.js";
+import { find, findAll, seek } from "../lib/dom.js";
 
-/** @import { Input } from "../lib/address.js" */
+/** @import { Field } from "../lib/address.js" */
 /** @typedef {HTMLInputElement | HTMLSelectElement} Control */
 
 const SEEDS = 1_000_000;
 const PAUSE = 250; // milliseconds without a change
+const LEFT_OUT = ["sample", "press", "show"]; // the page's own sample is its address's path
 const form = find(document, "#experiment", HTMLFormElement);
 const size = find(form, "[name=size]", HTMLSelectElement);
 const [width, height, seed, frames] = [field("width"), field("height"), field("seed"), field("frames")];
@@ -29,23 +30,8 @@ const controls = () =>
     /** @returns {each is Control} */ (each) => each instanceof HTMLInputElement || each instanceof HTMLSelectElement,
   );
 
-/**
- * The crop of an input as its box shows it: what is being typed may be no crop yet.
- *
- * @param {string} prefix of the input's names
- */
-const cropOf = (prefix) => find(document, `#${prefix.replace(".", "-")}frame`).dataset.crop ?? "";
-
-/**
- * An input's time range as the address has it; nothing of a photograph.
- *
- * @param {string} prefix
- */
-function rangeOf(prefix) {
-  const first = field(`${prefix}time.first`);
-  const block = /** @type {HTMLElement} */ (first.closest(".time"));
-  return block.hidden ? "" : timeOf(first.value, field(`${prefix}time.count`).value, block.dataset.frames ?? "");
-}
+/** The first input's crop as its box shows it: what is being typed may be no crop yet. */
+const cropOf = () => find(document, "#frame").dataset.crop ?? "";
 
 /**
  * Whether the chosen method has one of the parameters that methods for videos share.
@@ -70,7 +56,7 @@ function valueOf(control) {
 function followCrop() {
   const follows = "follows" in method().dataset; // else the method itself finds how large its texture is to be
   if (size.options[0]) size.options[0].textContent = follows ? "the crop’s" : "the method’s";
-  const crop = parse(cropOf(""));
+  const crop = parse(cropOf());
   const grow = (/** @type {number} */ side) => String(Math.floor(side * Number(size.value) + 0.5));
   if (size.value !== "free") {
     const known = follows || size.value !== "1" ? crop : null;
@@ -87,30 +73,33 @@ function followCrop() {
   pending = setTimeout(keepInAddress, PAUSE);
 }
 
-/** @returns {Input[]} */
-function readInputs() {
-  const inputs = [{ sample: field("sample").value, crop: cropOf(""), time: rangeOf("") }];
-  for (let number = 2; method().classList.contains(`takes-${number}`); number += 1) {
-    const prefix = `input-${number}.`;
-    const sample = find(form, `[name="${prefix}sample"]`, HTMLSelectElement).value;
-    inputs.push({ sample, crop: cropOf(prefix), time: rangeOf(prefix) });
-  }
-  return inputs;
+/** All fields of the form as they would be submitted, and with them the switches that are off. */
+function readFields() {
+  const fields = controls().filter(({ name, type }) => name && !LEFT_OUT.includes(name) && type !== "file");
+  const chosen = fields.filter((each) => each.type !== "radio" || each === method());
+  /** @type {Field[]} */
+  const read = chosen.map((each) => ({ name: each.name, value: valueOf(each), initial: each.dataset.default }));
+  for (const block of findAll(form, ".time")) shortenTime(block, read);
+  return read;
+}
+
+/**
+ * @param {HTMLElement} block of a time range's fields
+ * @param {Field[]} read
+ */
+function shortenTime(block, read) {
+  const names = findAll(block, "[data-time]", HTMLInputElement).map(({ name }) => name);
+  const [first, count] = names.map((name) => read.find((each) => each.name === name));
+  if (!first || !count) return;
+  [first.value, count.value] = shorten(first.value, count.value, block.dataset.frames ?? "");
 }
 
 function keepInAddress() {
-  const name = method().value;
-  const changed = [...controls().filter(asks), ...ownOf(name)].filter((each) => valueOf(each) !== each.dataset.default);
-  const address = addressOf({
-    method: name,
-    inputs: readInputs(),
-    size: size.value,
-    width: width.value,
-    height: height.value,
-    seed: seed.value,
-    parameters: changed.map((each) => [each.name.split(".").at(-1) ?? "", valueOf(each)]),
-  });
-  history.replaceState(history.state, "", address);
+  const inputs = [...method().classList].filter((each) => each.startsWith("takes-")).length;
+  const lacks = controls().filter((each) => each.closest(".asked") && !asks(each));
+  const query = queryOf(readFields(), { inputs, lacks: lacks.map(({ name }) => name) });
+  const path = `/samples/${encodeURIComponent(field("sample").value)}`; // also where a refused form is shown again
+  history.replaceState(history.state, "", `${path}?${query}`);
 }
 
 let before = method().value;

@@ -1,7 +1,13 @@
 """The address of a sample's page is its form: written, and read back, it is the same form."""
 
+import json
+import random
+import subprocess
+import sys
 from collections.abc import Mapping
 from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import given, settings
@@ -13,10 +19,14 @@ from app.experiments.model import Sample
 from app.images.crop import Frames, Rectangle
 from app.methods.fields import fields
 from app.methods.registry import METHODS
+from app.settings import ROOT
 from app.web.form.address import from_query, input_values, query_of, sample_url, with_switches
 from app.web.form.draft import SIZES, read_form
 from app.web.form.inputs import Choices
+from app.web.form.parameters import VIDEO_FIELDS, shared_names
 
+NODE = Path(sys.executable).parent / "node"
+SCRIPT = ROOT / "static" / "js" / "lib" / "address.js"
 SAMPLES = {"clip": 6, "sand": 1, "grass": 1}
 CHOSEN = {f"{declared.name}.{entry.name}": entry for declared in METHODS.values() for entry in fields(declared.params)}
 SHARED = {entry.name: entry for declared in METHODS.values() for entry in fields(declared.params)}
@@ -172,3 +182,40 @@ def test_an_address_needs_no_method() -> None:
     """Of a page that only leads to a crop."""
     url = sample_url("sand", input_values(1, Rectangle(4, 6, 20, 16), Frames(1, 5)))
     assert url == "/samples/sand?time.first=1&time.count=5&crop.x=4&crop.y=6&crop.width=20&crop.height=16"
+
+
+def as_in_the_page(values: dict[str, str]) -> list[Any]:
+    """A form as the script of the page sees it: its fields with what they begin with, and what the method asks for."""
+    begun = from_query(sample("sand"), CHOICES, {"method": "rpn"}).values
+    always = {"method", *input_values(1, Rectangle(0, 0, 1, 1)), "input-2.sample"} - {"time.first", "time.count"}
+    fields = [
+        {"name": name, "value": text, **({} if name in always else {"initial": begun[name]})}
+        for name, text in values.items()
+    ]
+    declared = METHODS[values["method"]]
+    lacks = [entry.name for entry in VIDEO_FIELDS if entry.name not in shared_names(declared)]
+    return [fields, {"inputs": len(declared.inputs) + declared.more, "lacks": lacks}]
+
+
+def test_script_and_service_write_every_form_alike() -> None:
+    """The same fields, with the same texts; their order is that of the page in the one and of the form in the other."""
+    chance = random.Random(20261130)
+    forms = []
+    for method in METHODS:
+        begun = from_query(sample("sand"), CHOICES, {"method": method}).values
+        for _ in range(12):
+            values = dict(begun)
+            for name in chance.sample(sorted(begun), 15):
+                choice = {"method": [method], "size": list(SIZES)}.get(name, ODD)
+                values[name] = chance.choice(["", *SAMPLES] if name.endswith("sample") else choice)
+            forms.append(values)
+    program = f"import {{ queryOf }} from {json.dumps(SCRIPT.as_uri())};" + (
+        "let all = ''; for await (const part of process.stdin) all += part;"
+        "console.log(JSON.stringify(JSON.parse(all).map((form) => queryOf(...form))));"
+    )
+    command = [str(NODE), "--input-type=module", "--eval", program]
+    cases = json.dumps([as_in_the_page(values) for values in forms])
+    done = subprocess.run(command, input=cases, capture_output=True, text=True, check=True)
+    assert [sorted(query.split("&")) for query in json.loads(done.stdout)] == [
+        sorted(query_of(values).split("&")) for values in forms
+    ]
