@@ -1,4 +1,4 @@
-"""The only wiring: settings → backends → service → web application."""
+"""Application factory: wires settings, backends, service and web application."""
 
 import asyncio
 import logging

@@ -1,4 +1,4 @@
-"""What routes are given: the service, the settings, and who is asking."""
+"""Dependencies of the routes: service, settings, the owner's token and cookie."""
 
 import re
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""Answers with a file: strong validators, ranges and names for those who keep it."""
+"""File responses: ETag, Range, If-None-Match (304) and Content-Disposition."""
 
 import re
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What browsers are told to allow: headers of every answer.
+"""Security headers: Content-Security-Policy (CSP), CORS for reads of the API, Referrer-Policy.
 
 Any web page may *read* the API, without cookies: results are public, or have an unguessable address.
 """

@@ -1,4 +1,4 @@
-"""``/healthz``, ``/readyz`` and ``/metrics``: for those who operate the service."""
+"""Health checks and monitoring: ``/healthz``, ``/readyz`` and ``/metrics`` (Prometheus)."""
 
 from typing import Any
 

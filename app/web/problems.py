@@ -1,4 +1,4 @@
-"""How errors are answered: RFC 9457 problems under ``/api``, pages elsewhere; and which status code each one has."""
+"""Error responses: RFC 9457 problem details under ``/api``, pages elsewhere; the status code of each error."""
 
 from collections.abc import Callable, Mapping, Sequence
 from http import HTTPStatus
@@ -151,7 +151,7 @@ async def _unexpected_error(request: Request, _error: Exception) -> Response:
 
 
 async def _client_disconnected(_request: Request, _error: Exception) -> Response:
-    """Answer who hung up while sending: nobody reads this, and it is no error of ours."""
+    """Answer a client that disconnected during upload; the response is never read and nothing is logged."""
     return Response(status_code=400)
 
 

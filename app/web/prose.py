@@ -1,4 +1,4 @@
-"""From what methods write about themselves to HTML: prose with formulas in it, and displayed formulas, as MathML."""
+"""Prose and formulas as HTML: emphasis, and LaTeX converted to MathML."""
 
 import re
 from functools import cache

@@ -1,4 +1,7 @@
-"""Ends what waits when the server is told to stop: it would wait for open event streams, and be killed for it."""
+"""Graceful shutdown: cancels waiting requests (event streams, ``Prefer: wait``) on SIGTERM and SIGINT.
+
+Otherwise uvicorn waits for them until it is killed.
+"""
 
 import asyncio
 import signal

@@ -1,4 +1,4 @@
-"""The pages' template environment, and what every template is given."""
+"""Jinja templates: the environment, its filters and globals."""
 
 import re
 from collections.abc import Mapping

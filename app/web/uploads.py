@@ -1,4 +1,4 @@
-"""Receives a form with files, the files straight to disk under the data directory."""
+"""File uploads: streams multipart/form-data to disk, bounded, below the data directory."""
 
 import tempfile
 import time

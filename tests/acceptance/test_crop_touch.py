@@ -89,7 +89,7 @@ def test_a_box_that_leaves_no_room_beside_it_does_not_hold_the_page(visitors: An
 def test_a_crop_is_drawn_right_ten_times_of_ten(visitors: Any, screenshot: Callable[..., None]) -> None:
     """Once that was asked for, from anywhere, also within the box; the page does not scroll meanwhile."""
     page, fingers = phone(visitors, f"{SAND}?crop=256,256,512,512")
-    button = page.get_by_role("button", name="Draw anew")
+    button = page.get_by_role("button", name="Redraw")
     for start, end in CORNERS:
         button.click()
         expect(button).to_have_attribute("aria-pressed", "true")
@@ -125,7 +125,7 @@ def test_a_slip_of_a_finger_does_nothing(visitors: Any, slip: tuple[float, float
         x, y = on_screen(page, *place)
         fingers.swipe((x, y), (x + slip[0], y + slip[1]))
         assert crop_of(page) == [300, 300, 400, 400]
-    page.get_by_role("button", name="Draw anew").click()
+    page.get_by_role("button", name="Redraw").click()
     x, y = on_screen(page, 100, 100)
     for dx, dy in [slip, (slip[0], 120), (120, slip[1])]:
         fingers.swipe((x, y), (x + dx, y + dy))
@@ -185,7 +185,7 @@ def test_an_enlarged_photograph_is_panned_and_shown_whole_again(visitors: Any) -
     fingers.swipe((frame["x"] + 40, frame["y"] + 40), (frame["x"] + 340, frame["y"] + 340))
     fingers.swipe((frame["x"] + 40, frame["y"] + 40), (frame["x"] + 340, frame["y"] + 340))
     assert (sight_of(page).x, sight_of(page).y) == pytest.approx((frame["x"], frame["y"]), abs=1)
-    page.get_by_role("button", name="Draw anew").click()
+    page.get_by_role("button", name="Redraw").click()
     fingers.swipe(on_screen(page, 100, 100), on_screen(page, 300, 220))
     assert crop_of(page) == pytest.approx([100, 100, 200, 120], abs=PIXEL)
     fingers.swipe(on_screen(page, 300, 220), on_screen(page, 260, 300))
@@ -216,7 +216,7 @@ def test_undo_takes_back_what_fingers_did(visitors: Any) -> None:
     undo, redo = page.get_by_role("button", name="Undo"), page.get_by_role("button", name="Redo")
     fingers.swipe(on_screen(page, 500, 500), on_screen(page, 600, 600))
     first = crop_of(page)
-    page.get_by_role("button", name="Draw anew").click()
+    page.get_by_role("button", name="Redraw").click()
     fingers.swipe(on_screen(page, 100, 100), on_screen(page, 900, 400))
     second = crop_of(page)
     undo.click()
@@ -232,10 +232,10 @@ def test_undo_takes_back_what_fingers_did(visitors: Any) -> None:
 
 def test_the_page_says_what_fingers_do(visitors: Any) -> None:
     page, _ = phone(visitors, SAND)
-    expect(page.get_by_text("To draw another crop, press “Draw anew” first.")).to_be_visible()
-    expect(page.get_by_text("Drag beside the box to draw another crop.")).to_be_hidden()
+    expect(page.get_by_text("To draw a new crop, press “Redraw” first.")).to_be_visible()
+    expect(page.get_by_text("Drag outside the box to draw a new crop.")).to_be_hidden()
     desk = visitors.visit(SAND)
-    expect(desk.get_by_text("Drag beside the box to draw another crop.")).to_be_visible()
+    expect(desk.get_by_text("Drag outside the box to draw a new crop.")).to_be_visible()
 
 
 @pytest.mark.parametrize("number", [1, 2])

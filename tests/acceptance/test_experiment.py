@@ -135,10 +135,10 @@ def test_the_other_model_at_the_same_phase_stands_beside_it(
 ) -> None:
     """One button leads to sample, RPN and ADSN in one gallery; at one phase both are light in the same places."""
     page = visitors.visit(f"/experiments/{experiment['id']}")
-    page.get_by_role("button", name="ADSN at the same phase").click()
+    page.get_by_role("button", name="ADSN with the same phase").click()
     page.wait_for_url("**/compare/*/*")
     expect(page.locator(".viewer.live")).to_be_visible()
-    expect(page.get_by_text("both have the same phase")).to_be_visible()
+    expect(page.get_by_text("Same crop, same seed, same phase")).to_be_visible()
     names = page.locator(".pane:not([hidden]) figcaption")
     expect(names).to_contain_text(["Sample", "RPN", "ADSN"])
     rpn, adsn = (shown_pixels(page, f".pane:nth-child({place}) img").astype(float) for place in (2, 3))
@@ -226,7 +226,7 @@ def test_its_owner_unlists_and_deletes_it(visitors: Any, site: Any) -> None:
     page.wait_for_url("**/experiments/*")
     expect(page.locator(".viewer.live")).to_be_visible()
     address = page.url
-    page.get_by_role("button", name="Take out of the archive").click()
+    page.get_by_role("button", name="Remove from the archive").click()
     expect(page.get_by_text("unlisted")).to_be_visible()
     page.get_by_text("Delete …").click()
     page.get_by_role("button", name="Delete it").click()
@@ -234,4 +234,4 @@ def test_its_owner_unlists_and_deletes_it(visitors: Any, site: Any) -> None:
     answer = page.goto(address)
     assert answer is not None
     assert answer.status == 410
-    expect(page.get_by_role("heading", name="This was deleted")).to_be_visible()
+    expect(page.get_by_role("heading", name="Deleted")).to_be_visible()

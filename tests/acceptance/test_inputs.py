@@ -113,7 +113,7 @@ def test_two_samples_without_a_script(visitors: Any, site: Any, photograph: Path
     expect(page.locator("#input-2")).to_be_hidden()
     page.get_by_text("Mix", exact=True).click()
     page.locator("#input-2-sample").select_option(label="Mossy grass")
-    page.locator("#input-2").get_by_role("button", name="Show it").click()
+    page.locator("#input-2").get_by_role("button", name="Show").click()
     expect(page.locator("#method-mix")).to_be_checked()
     expect(page.locator("#input-2 .frame img")).to_have_attribute(
         "src", "/api/v1/samples/grass_jungle002/image?size=2048"
@@ -216,7 +216,7 @@ def test_back_and_reload_find_every_sample_and_crop(visitors: Any) -> None:
         page.goto(page.url)
     page.goto(page.url)
     run(page)
-    page.get_by_role("link", name="Other crop, size or parameters").click()
+    page.get_by_role("link", name="Change crop, size or parameters").click()
     page.wait_for_url("**/samples/*")
     assert crop_of(page, 2) == [10, 20, 120, 90]
     expect(page.locator("#mix-weights")).to_have_value("2,1")

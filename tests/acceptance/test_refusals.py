@@ -72,7 +72,7 @@ def test_a_full_queue(visitors: Any, full_site: Any, assert_accessible: Any, scr
     refused(page, 503)
     summary = page.locator(".summary")
     wait_out(page)
-    expect(summary).to_contain_text("All hands are busy")
+    expect(summary).to_contain_text("Server busy — try again shortly")
     expect(summary).to_be_focused()
     expect(page).to_have_title(re.compile("^Error: "))
     assert_accessible(page)

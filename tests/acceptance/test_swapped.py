@@ -178,7 +178,7 @@ def test_a_page_swapped_in_is_the_page_loaded_afresh(
 def test_a_comparison_swapped_in_is_the_one_loaded_afresh(visitors: Any, busy: Waiting, experiment: Any) -> None:
     page = visitors.visit(f"/experiments/{experiment['id']}")
     with busy():
-        page.get_by_role("button", name="ADSN at the same phase").click()
+        page.get_by_role("button", name="ADSN with the same phase").click()
         page.wait_for_url(re.compile("/compare/"))
         expect(page.locator("[data-experiment]")).to_be_visible()
         page.evaluate("window.sameDocument = true")

@@ -1,4 +1,4 @@
-"""The JSON that is sent to the API."""
+"""JSON request bodies of the API: strict types, no unknown fields."""
 
 from typing import Annotated
 

@@ -1,4 +1,4 @@
-"""``/docs``: the API's document to read and try, with files of our own host only."""
+"""API documentation, ``/docs``: Swagger UI on the OpenAPI document, served from this host only."""
 
 from importlib.resources import files
 from pathlib import Path

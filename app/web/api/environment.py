@@ -1,4 +1,4 @@
-"""Where an experiment was computed, as the API's records say it."""
+"""Environment record of an experiment: versions and processor that computed it."""
 
 from pydantic import BaseModel, Field
 

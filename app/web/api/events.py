@@ -1,4 +1,4 @@
-"""``/api/v1/experiments/{id}/events``: an experiment as it goes, as server-sent events."""
+"""Server-sent events (SSE), ``/api/v1/experiments/{id}/events``: progress of an experiment."""
 
 from collections.abc import AsyncGenerator, AsyncIterator
 from contextlib import aclosing

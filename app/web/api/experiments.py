@@ -1,4 +1,4 @@
-"""``/api/v1/experiments``: submit, read, list, change, cancel and delete."""
+"""Experiments of the REST API, ``/api/v1/experiments``: submit, read, list, change, cancel and delete."""
 
 import re
 from typing import Annotated, Any

@@ -1,4 +1,4 @@
-"""``/api/v1/methods``: what the service can compute."""
+"""Methods of the REST API, ``/api/v1/methods``: names, parameters, inputs and outputs."""
 
 from fastapi import APIRouter
 

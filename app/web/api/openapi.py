@@ -1,4 +1,4 @@
-"""The OpenAPI document: what FastAPI derives from the routes, plus what only the registry of methods knows."""
+"""OpenAPI document: what FastAPI derives from the routes, plus the parameters of all methods."""
 
 from collections.abc import Iterable
 from typing import Annotated, Any

@@ -1,4 +1,4 @@
-"""``/api/v1/experiments/{id}/outputs``: the files of an experiment, one by one or all in one."""
+"""Outputs of the REST API, ``/api/v1/experiments/{id}/outputs``: single files, conversions, and a ZIP of all."""
 
 import io
 import json

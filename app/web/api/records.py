@@ -1,4 +1,4 @@
-"""The JSON that the API answers with, and how domain objects become it."""
+"""JSON records of the API: the bodies of its responses, made from domain objects."""
 
 from datetime import datetime
 from typing import Any, Literal, Self
@@ -29,18 +29,18 @@ class SampleRecord(Record):
     """A sample."""
 
     id: str
-    width: int = Field(description="Pixels, upright.")
+    width: int = Field(description="Width in pixels, upright.")
     height: int
     channels: int = Field(description="Colour channels: 1 or 3.")
     depth: int = Field(description="Bits per channel: 8 or 16.")
     frames: int = Field(description="1 for a still picture.")
     rate: float = Field(description="Frames a second; 0 for a still picture.")
-    media_type: str = Field(description="Of a video, what it was uploaded as.")
-    title: str | None = Field(description="Of a bundled sample.")
-    transparent: bool = Field(description="Whether some pixels are not opaque; a crop must not hold such.")
+    media_type: str = Field(description="Media type of the uploaded video; image/png for a still picture.")
+    title: str | None = Field(description="Title of a bundled sample; null for uploads.")
+    transparent: bool = Field(description="Whether some pixels are not opaque; a crop must not contain such pixels.")
     created_at: datetime
     url: str
-    image: str = Field(description="Address of an upright rendition.")
+    image: str = Field(description="Address of an upright image for display.")
 
     @classmethod
     def of(cls, sample: Sample, base: str) -> "SampleRecord":
@@ -84,14 +84,16 @@ class OutputRecord(Record):
 class StructureRecord(BaseModel):
     """The structure index δ: the share of total variation that a picture lacks against its random phase textures."""
 
-    inputs: list[float | None] = Field(description="Of the crops; null for one of less than 32 pixels along a side.")
-    outputs: list[float | None] = Field(description="Of the textures, in the order of the outputs; null likewise.")
+    inputs: list[float | None] = Field(description="One per crop; null if a side is shorter than 32 pixels.")
+    outputs: list[float | None] = Field(
+        description="One value per texture, in the order of the outputs; null as above."
+    )
 
 
 class FactRecord(BaseModel):
     """A number that the method found out."""
 
-    output: str = Field(description="Name of the output it is about.")
+    output: str = Field(description="Name of the output that the number describes.")
     name: str
     title: str
     value: float
@@ -110,27 +112,29 @@ class ExperimentRecord(Record):
 
     id: str
     status: Status
-    progress: float = Field(ge=0, le=1, description="The part of the run that is done.")
+    progress: float = Field(ge=0, le=1, description="Fraction of the run that is done.")
     stage: str | None = Field(description="What is being computed while it runs.")
     position: int | None = Field(description="Place in the queue while it waits; 1 is next.")
     method: str
     inputs: list[InputRecord]
     parameters: dict[str, Any] = Field(description="Complete: sizes and defaults are filled in.")
-    depth: int = Field(description="Bits per channel of the pictures, but for those that never have more than 8.")
+    depth: int = Field(description="Bits per channel of the pictures, except those that always have 8.")
     listed: bool
     outputs: list[OutputRecord]
     timings: dict[str, float] = Field(description="Seconds by stage.")
-    diagnostics: DiagnosticsRecord | None = Field(description="Once it has succeeded.")
-    environment: EnvironmentRecord | None = Field(description="Once it has succeeded; null of earlier versions.")
-    error: str | None = Field(description="Why it failed and what to try.")
+    diagnostics: DiagnosticsRecord | None = Field(description="Null until the experiment has succeeded.")
+    environment: EnvironmentRecord | None = Field(
+        description="Null until the experiment has succeeded, and for experiments of earlier versions."
+    )
+    error: str | None = Field(description="Why the experiment failed and what to try.")
     created_at: datetime
     started_at: datetime | None
     finished_at: datetime | None
     url: str
-    page: str = Field(description="Address of its page, for people.")
+    page: str = Field(description="Address of the experiment's page for people.")
     owner_token: str | None = Field(
         None,
-        description="Only in the answer that makes you an owner: keep it and send it as `Authorization: Bearer …` "
+        description="Only in the response that makes you an owner: keep it, and send it as `Authorization: Bearer …` "
         "to cancel, delete, list or unlist your experiments. Browsers keep it in a cookie.",
     )
 
@@ -164,7 +168,7 @@ class ProgressRecord(Record):
 
     status: Status
     position: int | None = Field(description="Place in the queue while it waits; 1 is next.")
-    progress: float = Field(description="The part of the run that is done.")
+    progress: float = Field(description="Fraction of the run that is done.")
     stage: str | None = Field(description="What is being computed while it runs.")
     elapsed: float = Field(description="Seconds since the run started.")
 
@@ -179,8 +183,8 @@ class PlanRecord(Record):
     width: int = Field(description="Pixels of the texture.")
     height: int
     frames: int = Field(description="1 for a still picture.")
-    memory: int = Field(description="Bytes that the run needs at its peak; 0 where it is little in any case.")
-    memory_limit: int = Field(description="Bytes that a run may need; one that needs more is refused.")
+    memory: int = Field(description="Peak memory of the run in bytes; 0 if it is always small.")
+    memory_limit: int = Field(description="Largest memory in bytes that a run may need.")
 
 
 class ExperimentList(BaseModel):
@@ -196,7 +200,7 @@ class SlotRecord(BaseModel):
     name: str
     title: str
     summary: str
-    moving: bool = Field(description="Whether it is a video.")
+    moving: bool = Field(description="Whether the input is a video.")
 
 
 class ReferenceRecord(BaseModel):
@@ -207,7 +211,7 @@ class ReferenceRecord(BaseModel):
     venue: str
     year: int
     url: str
-    kind: str = Field(description="Of its BibTeX entry.")
+    kind: str = Field(description="BibTeX entry type.")
     pages: str
     bibtex: str
 
@@ -218,9 +222,9 @@ class AnnouncedRecord(Record):
     name: str
     kind: Literal["texture", "view"] = Field(description="A texture that is synthesised, or a view on the way to it.")
     media_type: str
-    depths: list[int] = Field(description="Bits per channel that it comes at.")
-    parameters: list[str] = Field(description="Those that change it.")
-    condition: str | None = Field(description="Where it is given; null where always.")
+    depths: list[int] = Field(description="Bits per channel that the output is available at.")
+    parameters: list[str] = Field(description="Parameters that change the output.")
+    condition: str | None = Field(description="When the output is given; null if always.")
 
     @classmethod
     def of(cls, output: OutputSpec, method: Method) -> "AnnouncedRecord":
@@ -241,8 +245,8 @@ class MethodRecord(Record):
     inputs: list[SlotRecord]
     more_inputs: int = Field(description="How many further inputs like the last one it takes.")
     parameters: dict[str, Any] = Field(description="JSON Schema of its parameters.")
-    outputs: list[AnnouncedRecord] = Field(description="All that it can give, in their order.")
-    reference: ReferenceRecord = Field(description="The article it comes from.")
+    outputs: list[AnnouncedRecord] = Field(description="All outputs that the method can give, in their order.")
+    reference: ReferenceRecord = Field(description="The main article.")
     references: list[ReferenceRecord] = Field(description="All of its articles, the main one first.")
 
     @classmethod

@@ -1,4 +1,4 @@
-"""``/api/v1/samples``: photographs and clips come in, their records and renditions go out."""
+"""Samples of the REST API, ``/api/v1/samples``: upload photographs and clips, read their records and images."""
 
 from typing import Annotated, Any
 

@@ -1,4 +1,4 @@
-"""``/api/v1/samples/{id}/structure``: whether a crop is a micro-texture."""
+"""Structure index of a crop, ``/api/v1/samples/{id}/structure``: whether it is a micro-texture."""
 
 from typing import Annotated
 

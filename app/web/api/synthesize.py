@@ -1,4 +1,4 @@
-"""``POST /api/v1/synthesize``: photographs or clips in, their texture or another output out, nothing kept."""
+"""Synthesis in one request, ``POST /api/v1/synthesize``: files in, an output back, nothing stored."""
 
 import asyncio
 from collections.abc import Callable, Sequence

@@ -1,4 +1,4 @@
-"""What the template of a sample's page is given: methods with their fields, inputs with what can be chosen for them."""
+"""Template context of a sample's page: methods with their fields, inputs with the samples they offer."""
 
 from contextlib import suppress
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""The inputs in the form of a sample's page: the page's own sample, and for some methods further ones."""
+"""Inputs of a sample's form: samples, crops and time ranges, read and validated."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Turn what a method declares into form fields, and a submitted form back into parameters."""
+"""Parameters of the methods as form fields: names, and validation of a submitted form."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

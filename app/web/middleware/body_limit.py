@@ -1,4 +1,4 @@
-"""Bounds the bytes of a request's body, declared or not, before anything else looks at it."""
+"""Request size limit: rejects bodies over the limit (413) before they are parsed."""
 
 from starlette.datastructures import Headers
 from starlette.exceptions import HTTPException

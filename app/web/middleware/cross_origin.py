@@ -1,7 +1,7 @@
-"""Which requests of other sites' pages are refused: those that change something.
+"""CSRF protection: rejects cross-site writes by Sec-Fetch-Site and Origin; answers CORS preflights for reads.
 
-Writes are taken from our own pages and from programs. Browsers say where a request comes from; no page makes them lie.
-Behind a proxy that changes the Host header our own pages look like another site's: the refusal says so.
+Writes are accepted from our own pages and from programs. Browsers set both headers themselves; no page can forge them.
+Behind a proxy that changes the Host header our own pages look like another site's: the error message says so.
 """
 
 from urllib.parse import urlsplit

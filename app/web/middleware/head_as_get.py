@@ -1,4 +1,4 @@
-"""HEAD for every GET: the same headers, without the body."""
+"""HEAD requests: answered as GET, without the body."""
 
 from starlette.datastructures import MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send

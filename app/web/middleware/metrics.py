@@ -1,4 +1,4 @@
-"""What Prometheus is told: requests as they come, the rest when it asks."""
+"""Prometheus metrics: counts and durations of requests, and the state of the service."""
 
 import time
 from collections.abc import Iterable

@@ -1,4 +1,4 @@
-"""Security headers of every answer."""
+"""Security headers middleware: adds them to every response, and forbids shared caching by default."""
 
 from starlette.datastructures import MutableHeaders
 from starlette.types import ASGIApp, Message, Receive, Scope, Send

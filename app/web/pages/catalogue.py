@@ -1,4 +1,4 @@
-"""The catalogue of what random phase noise can do and cannot, and the figures of the literature."""
+"""Catalogue page: where random phase noise succeeds and fails; and the figures of the literature."""
 
 from typing import Any
 

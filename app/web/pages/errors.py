@@ -1,4 +1,4 @@
-"""Error pages."""
+"""Error pages: a plain title for each status code, and what to do."""
 
 from fastapi import Request
 from starlette.responses import Response
@@ -6,16 +6,16 @@ from starlette.responses import Response
 from app.web.templating import render
 
 WORDS = {
-    403: "This is not yours",
-    404: "There is nothing here",
-    405: "This address does not do that",
-    409: "It is too late for that",
-    410: "This was deleted",
-    413: "This is too large",
-    415: "This is neither a photograph nor a clip",
-    422: "This does not fit",
-    500: "Something went wrong on our side",
-    503: "All hands are busy",
+    403: "Not allowed",
+    404: "Not found",
+    405: "Method not allowed",
+    409: "No longer possible",
+    410: "Deleted",
+    413: "File too large",
+    415: "Unsupported file type",
+    422: "Please correct the form",
+    500: "Something went wrong",
+    503: "Server busy — try again shortly",
 }
 
 

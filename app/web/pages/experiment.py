@@ -1,4 +1,4 @@
-"""The page of an experiment in all its states, two experiments side by side, and what their buttons do."""
+"""Experiment page in all its states, and the actions of its buttons."""
 
 import secrets
 from collections.abc import Iterator, Sequence
@@ -217,7 +217,7 @@ def again(
     seed: Annotated[str, Form()] = "",
     press: Annotated[str, Form()] = "",
 ) -> Response:
-    """Run the same crop once more: with a new seed, or by another method at the same phase."""
+    """Run the same crop once more: with a new seed, or by another method with the same phase."""
     key = read_press(press)
     experiment = service.experiments.get(experiment_id)
     known = method(name).params.model_fields

@@ -1,4 +1,4 @@
-"""The overview of the methods, and a page for each: what it does, shown by running it."""
+"""Method pages: the overview, and one page for each method."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""Page of a sample: its form is filled in, checked and submitted here."""
+"""Sample page: its form, filled in, checked and submitted."""
 
 from contextlib import suppress
 from dataclasses import asdict, replace
@@ -58,20 +58,20 @@ def _sample(
     context = form_context(sample, choices, draft) | {
         "limit": settings.max_upload_bytes,
         "structure": form_structure(get_service(request), sample, draft.values),
-        "summary_title": WORDS[503] if status == 503 else "Please look at this again",
+        "summary_title": WORDS[503] if status == 503 else "Please correct the form",
     }
     return render(request, "sample.html", context, status)
 
 
 @router.get("/experiments")
 def experiments() -> Response:
-    """Lead who reloads after a refused form, or shortens an address, to the list of experiments."""
+    """Redirect `/experiments` to the archive (people reach it by reloading a rejected form)."""
     return RedirectResponse("/archive")
 
 
 @router.post("/experiments")
 async def submit(request: Request, service: ServiceDep, settings: SettingsDep, token: TokenDep) -> Response:
-    """Take the form of a sample's page: run it, or show the samples that were chosen in it."""
+    """Submit the form: run it, or show the samples that were chosen in it."""
     names = {f"{prefix(number)}file": f"{prefix(number)}sample" for number in further_numbers()}
     if not request.headers.get("content-type", "").startswith("multipart/form-data"):
         return await run_in_threadpool(_submit, request, service, settings, token, await _texts(request), {})

@@ -1,4 +1,4 @@
-"""The same run elsewhere: an experiment as curl, as a command line and as Python."""
+"""Code snippets of an experiment: the same run with curl, on the command line and in Python."""
 
 import json
 import shlex

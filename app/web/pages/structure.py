@@ -1,4 +1,4 @@
-"""The page of the structure index: what it says, on a scale of the bundled photographs, its formulas and its limits."""
+"""Structure index page: verdicts, a scale of the bundled photographs, formulas and limits."""
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress

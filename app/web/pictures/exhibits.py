@@ -1,4 +1,4 @@
-"""Exhibits as pages show them: the pictures of an experiment that is made, or what stands in for those that are not."""
+"""Exhibits on pages: the pictures of a finished experiment, or placeholders for one that is not there yet."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -124,7 +124,7 @@ def _make_placeholders(service: Service, exhibit: Exhibit, made: Experiment | No
     try:
         experiment = service.exhibition.prepare(exhibit)
     except AppError:
-        return [ExhibitPicture(label(exhibit.method), "", "", 256, 256, state="Its sample is not here yet")]
+        return [ExhibitPicture(label(exhibit.method), "", "", 256, 256, state="Sample not available yet")]
     page = f"/experiments/{made.id}" if made is not None else ""
     size = experiment.parameters["width"], experiment.parameters["height"]
     texture = ExhibitPicture(

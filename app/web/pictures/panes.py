@@ -1,4 +1,4 @@
-"""The pictures of an experiment as its page shows them, with what was measured of each."""
+"""Panes of the viewer: the pictures of an experiment, with their structure index."""
 
 from collections import Counter
 from collections.abc import Iterator, Sequence

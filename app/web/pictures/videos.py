@@ -1,4 +1,4 @@
-"""How pages show an experiment's films: the files that browsers choose from, a poster, and the clock's numbers."""
+"""Videos of an experiment on its pages: sources, poster, frames and rate."""
 
 from dataclasses import dataclass
 

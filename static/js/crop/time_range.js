@@ -72,7 +72,7 @@ export class TimeRange {
 
   /** Whether the chosen method takes a video here. */
   get video() {
-    return find(this.form, "[name=method]:checked").classList.contains(`moves-${this.root.dataset.input}`);
+    return find(this.form, "[name=method]:checked").classList.contains(`video-${this.root.dataset.input}`);
   }
 
   /** @returns {Extent} */

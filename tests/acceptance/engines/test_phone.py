@@ -32,7 +32,7 @@ def test_the_way_of_a_photograph_by_fingers(phone: Window, photograph: Path, bus
     phone.tap(".confirm button", "Delete it")
     phone.at("/archive")
     phone.open(path)
-    phone.has("h1", "This was deleted")
+    phone.has("h1", "Deleted")
 
 
 def scroll_over_photograph(phone: Window) -> None:

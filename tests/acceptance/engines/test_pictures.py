@@ -182,7 +182,7 @@ def run_again(window: Window, before: str, texture: np.ndarray) -> tuple[str, np
 
 def compare(window: Window, texture: np.ndarray) -> None:
     """Sample, this texture and that of the other model beside each other."""
-    window.click(".again button", "RPN at the same phase")
+    window.click(".again button", "RPN with the same phase")
     window.at("/compare/")
     window.has("table.both")
     rpn, adsn = (window.decoded(f".pane:nth-child({place}) .stage img") for place in (2, 3))
@@ -211,4 +211,4 @@ def delete_from_archive(window: Window, path: str) -> None:
     window.has("h1", "Archive")
     window.lacks(entry)
     window.open(path)
-    window.has("h1", "This was deleted")
+    window.has("h1", "Deleted")

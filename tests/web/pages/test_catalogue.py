@@ -45,7 +45,7 @@ def test_a_picture_that_is_not_made_says_so_and_shows_its_crop_if_the_sample_is_
     assert 'viewBox="96 96 80 80"' in windows
     draws = next(part for part in text.split("<figure")[1:] if 'id="nine-draws"' in part)
     assert "/outputs/" not in draws
-    assert "Its sample is not here yet" in draws
+    assert "Sample not available yet" in draws
 
 
 @pytest.mark.parametrize("entry", FIGURES, ids=lambda entry: entry.name)

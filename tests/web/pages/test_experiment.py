@@ -21,7 +21,7 @@ def test_the_finished_page_shows_pictures_record_and_links(site: Any, experiment
     address = f"/api/v1/experiments/{experiment['id']}/outputs"
     for name in ("crop", "texture"):
         assert f'<img src="{address}/{name}"' in text
-    for part in ("Time by stage", "Run again", "ADSN at the same phase", "New seed", "toroidal"):
+    for part in ("Time by stage", "Run again", "ADSN with the same phase", "New seed", "toroidal"):
         assert part in text
 
 
@@ -114,12 +114,12 @@ def test_only_methods_driven_by_the_same_phase_are_offered_at_it(
     site: Any, experiment: dict[str, Any], mixture: dict[str, Any]
 ) -> None:
     """And with the inputs that there are; every other method is behind the form."""
-    offered = re.findall(r">([^<]+) at the same phase<", page_of(site, experiment))
+    offered = re.findall(r">([^<]+) with the same phase<", page_of(site, experiment))
     assert "ADSN" in offered
     assert not {"DSN", "Mix", "Heeger–Bergen"} & set(offered)
     text = page_of(site, mixture)
-    assert "at the same phase" not in text
-    assert re.search(r'href="/samples/[^"]+#methods">Other method', text)
+    assert "with the same phase" not in text
+    assert re.search(r'href="/samples/[^"]+#methods">Change method', text)
 
 
 def test_methods_without_that_phase_are_compared_without_a_word_of_it(site: Any, experiment: dict[str, Any]) -> None:
@@ -171,7 +171,7 @@ def test_only_its_owner_sees_and_may_use_the_owners_buttons(site: Any) -> None:
     assert site.client.post(f"{address}/delete").headers["location"] == "/archive"
     gone = site.client.get(address)
     assert gone.status_code == 410
-    assert "This was deleted" in gone.text
+    assert "Deleted" in gone.text
 
 
 def test_run_again_draws_a_new_seed(site: Any, experiment: dict[str, Any]) -> None:
@@ -193,7 +193,7 @@ def test_the_other_model_runs_at_the_same_phase(site: Any, experiment: dict[str,
     assert record["method"] == "adsn"
     assert record["parameters"]["seed"] == experiment["parameters"]["seed"]
     text = site.client.get(both).text
-    assert "both have the same phase" in text
+    assert "Same crop, same seed, same phase" in text
     assert text.split('class="panes')[1].split("</section>")[0].count("<img ") == 3
 
 
@@ -206,7 +206,7 @@ def test_comparing_with_one_that_runs_shows_its_progress(site: Any, experiment: 
 
 
 def test_other_parameters_open_the_form_with_those_of_the_experiment(site: Any, experiment: dict[str, Any]) -> None:
-    found = re.search(r'href="(/samples/[^"]+)">Other crop', page_of(site, experiment))
+    found = re.search(r'href="(/samples/[^"]+)">Change crop', page_of(site, experiment))
     assert found is not None
     text = site.client.get(found[1].replace("&amp;", "&")).text
     for name, value in {"crop.width": 32, "crop.height": 24, "width": 40, "height": 36, "seed": 7}.items():
@@ -229,7 +229,7 @@ def test_a_failed_experiment_says_why_and_what_to_try(serve: Callable[..., Any],
         record = site.run().json()
         assert record["status"] == "failed"
         text = page_of(site, record)
-    assert "It did not work" in text
+    assert "The run failed" in text
     assert html.escape(record["error"]) in text
-    assert "Change it and try again" in text
+    assert "Edit and try again" in text
     assert "refresh" not in text

@@ -152,7 +152,7 @@ def test_an_experiment_s_form_has_all_of_its_inputs(site: Any, other: str) -> No
     inputs = [{"sample": sample, "crop": dict(zip(SIDES, box, strict=True))} for sample, box in sizes.items()]
     record = site.finished(method="mix", inputs=inputs, parameters={"strip": 2})
     page = site.client.get(f"/experiments/{record['id']}").text
-    link = re.search(r'href="(/samples/[^"]+)">Other crop', page)
+    link = re.search(r'href="(/samples/[^"]+)">Change crop', page)
     assert link is not None
     text = site.client.get(html.unescape(link[1])).text
     assert chosen(text, 2) == other

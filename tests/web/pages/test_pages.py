@@ -221,7 +221,7 @@ def test_a_full_queue_keeps_the_form(serve: Callable[..., Any], tmp_path: Path) 
         answers = [site.client.post("/experiments", data=FORM) for _ in range(3)]
         assert answers[-1].status_code == 503
         assert Page(answers[-1].text).value("seed") == "3"
-        assert "All hands are busy" in answers[-1].text
+        assert "Server busy — try again shortly" in answers[-1].text
 
 
 def test_the_archive_filters_and_pages(site: Any) -> None:
@@ -252,7 +252,7 @@ def test_an_empty_archive_says_so(serve: Callable[..., Any], tmp_path: Path) -> 
 
 @pytest.mark.parametrize(
     ("path", "status", "words"),
-    [("/nothing", 404, "There is nothing here"), ("/experiments/unknown", 404, "There is nothing here")],
+    [("/nothing", 404, "Not found"), ("/experiments/unknown", 404, "Not found")],
 )
 def test_errors_are_pages(site: Any, path: str, status: int, words: str) -> None:
     answer = site.client.get(path)

@@ -110,7 +110,7 @@ def test_a_picture_of_a_few_pixels_has_words_and_no_number():
 
 
 def test_a_crop_of_a_few_pixels_has_words_without_a_script_too(site):
-    part = TEMPLATES.env.get_template("_partials/meter.html")
+    part = TEMPLATES.env.get_template("_partials/crop_meter.html")
     said = part.render(sample=site.service.samples.get("gravel_gray"), structure=Index(None, None))
     assert 'class="structure unknown"' in said
     assert "Too small to tell" in said
@@ -119,7 +119,7 @@ def test_a_crop_of_a_few_pixels_has_words_without_a_script_too(site):
 
 @pytest.mark.parametrize("structure", [None, Index(0.1, 1.0)])
 def test_the_crop_s_meter_shows_what_the_page_knows_and_hides_until_it_knows(site, structure):
-    part = TEMPLATES.env.get_template("_partials/meter.html")
+    part = TEMPLATES.env.get_template("_partials/crop_meter.html")
     said = part.render(sample=site.service.samples.get("gravel_gray"), structure=structure)
     assert (" hidden" in said) == (structure is None)
     assert ("Structured: random" in said) == (structure is not None)
