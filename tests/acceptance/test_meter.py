@@ -95,7 +95,9 @@ def test_its_page_places_every_photograph_and_is_accessible(
 def test_without_a_script_the_page_and_its_links_work(visitors: Any) -> None:
     page = visitors.visit("/structure", java_script_enabled=False)
     page.locator(".photographs a", has_text="Soil").click()
-    expect(page).to_have_url(re.compile(r"/samples/soil_ground010\?(.*&)?crop\.x=416&crop\.y=352&crop\.width=512&crop\.height=512"))
+    expect(page).to_have_url(
+        re.compile(r"/samples/soil_ground010\?(.*&)?crop\.x=416&crop\.y=352&crop\.width=512&crop\.height=512")
+    )
     expect(page.locator(METER)).to_contain_text("Structured")
 
 

@@ -56,7 +56,10 @@ def test_a_first_visitor_whose_answer_was_lost_owns_what_was_pressed(site: Any) 
         assert press(site, press=OTHER_KEY, client=visitor, seed="77") == first
         assert visitor.cookies["microtexture_owner"] == token
         assert OTHER_KEY not in token
-        assert ">Manage</h2>" in visitor.get(first).text or site.client.get(f"/api/v1{first}").json()["status"] != "succeeded"
+        assert (
+            ">Manage</h2>" in visitor.get(first).text
+            or site.client.get(f"/api/v1{first}").json()["status"] != "succeeded"
+        )
 
 
 def test_two_at_once_are_one(site: Any) -> None:
