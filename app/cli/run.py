@@ -26,9 +26,9 @@ from app.cli.files import (
 )
 from app.errors import InvalidInputError, NotFoundError
 from app.experiments.diagnostics import diagnose
+from app.experiments.files.staging import pick
 from app.experiments.model import Experiment, ExperimentInput, Sample
 from app.experiments.preparation import Answer, NewExperiment, NewInput, prepare
-from app.experiments.run import pick
 from app.images.crop import Frames, Rectangle
 from app.images.decode import Decoded, Limits, decode
 from app.methods.allowed import Allowed

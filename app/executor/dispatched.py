@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from distributed import Future
 from distributed.scheduler import KilledWorker
 
-from app.executor.messages import BROKEN, LOST, out_of_time
+from app.executor.messages import LOST, out_of_time
+from app.experiments.failures import BROKEN
 
 log = logging.getLogger(__name__)
 

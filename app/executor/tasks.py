@@ -9,7 +9,8 @@ from distributed import get_worker
 
 from app.errors import AppError, CancelledError, TimeLimitError
 from app.executor.memory import give_back
-from app.executor.messages import BROKEN, out_of_time
+from app.executor.messages import out_of_time
+from app.experiments.failures import BROKEN
 from app.experiments.ports import Run
 from app.settings import Settings
 

@@ -7,7 +7,8 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from app.errors import AppError, CancelledError, TimeLimitError
-from app.executor.messages import BROKEN, out_of_time
+from app.executor.messages import out_of_time
+from app.experiments.failures import BROKEN
 from app.experiments.model import Snapshot, Status
 from app.experiments.ports import Ended, Run
 from app.settings import Settings

@@ -2,132 +2,23 @@
 
 import logging
 import threading
-from collections.abc import Callable, Iterator
-from pathlib import Path
+from collections.abc import Iterator
 from types import SimpleNamespace
-from typing import Any
 
 import pytest
 from distributed.scheduler import KilledWorker
 
-from app.executor import dask
-from app.executor.dask import GRACE_SECONDS, SILENCE_SECONDS, DaskExecutor
-from app.executor.dispatched import Dispatched
 from app.executor.messages import LOST
 from app.experiments.model import Snapshot, Status
-from app.settings import Settings
+from tests.executor.fake_engine import PATIENCE, WORKER, Bench, dispatching
 
-PATIENCE = 20.0
-WORKER = "tcp://worker"
-LIMIT = 60.0
 KILLED = KilledWorker("task", None, 0)  # type: ignore[arg-type] # which worker it was is not looked at
-
-
-class Task:
-    """A future that ends when the test says so."""
-
-    def __init__(self, job: str) -> None:
-        self.job = job
-        self.status = "pending"
-        self.error: Exception | None = None
-        self.callback: Callable[[Any], None] = lambda task: None
-        self.released = False
-
-    def add_done_callback(self, callback: Callable[[Any], None]) -> None:
-        self.callback = callback
-
-    def exception(self) -> Exception | None:
-        return self.error
-
-    def release(self) -> None:
-        self.released = True
-
-    def end(self, status: str = "finished", error: Exception | None = None) -> None:
-        self.status, self.error = status, error
-        self.callback(self)
-
-
-class Engine:
-    """One worker with one thread; what it is asked is noted, and what is in ``failing`` raises."""
-
-    def __init__(self) -> None:
-        self.alive = True
-        self.threads = {WORKER: 1}
-        self.failing: set[str] = set()
-        self.asked: list[tuple[str, Any]] = []
-        self.tasks: dict[str, Task] = {}
-
-    def _ask(self, what: str, value: Any) -> None:
-        self.asked.append((what, value))
-        if what in self.failing:
-            raise OSError(f"{what} fails")
-
-    def workers(self) -> dict[str, int]:
-        self._ask("workers", None)
-        return dict(self.threads)
-
-    def submit(self, job: str, address: str) -> Task:
-        self._ask("submit", job)
-        self.tasks[job] = Task(job)
-        return self.tasks[job]
-
-    def forget(self, task: Task) -> None:
-        self._ask("forget", task.job)
-
-    def stop(self, job: str) -> None:
-        self._ask("stop", job)
-
-    def kill(self, address: str) -> None:
-        self._ask("kill", address)
-
-    def close(self) -> None:
-        self._ask("close", None)
-
-    def times(self, what: str) -> list[Any]:
-        return [value for name, value in self.asked if name == what]
-
-
-class Bench:
-    """An executor whose engines are made by the test, and what it told the service."""
-
-    def __init__(self, engines: list[Engine]) -> None:
-        self.engines = engines
-        self.opened: list[Engine] = []
-        self.cannot_open = 0
-        self.ended: list[tuple[str, str | None]] = []
-        self.told: list[str] = []
-        self.executor = DaskExecutor(Settings(data_dir=Path("unused"), time_limit=LIMIT), lambda *_: None)
-        self.executor.subscribe(self.told.append)
-        self._moments = threading.Event()
-
-    def open(self, *_: Any, **__: Any) -> Engine:
-        if self.cannot_open:
-            self.cannot_open -= 1
-            raise OSError("no scheduler answers")
-        self.opened.append(self.engines[len(self.opened)])
-        return self.opened[-1]
-
-    def start(self) -> None:
-        self.executor.start(lambda job, failure: self.ended.append((job, failure)))
-
-    def until(self, condition: Callable[[], object]) -> None:
-        for _ in range(int(PATIENCE / 0.005)):
-            if condition():
-                return
-            self._moments.wait(0.005)
-        pytest.fail("what was waited for did not come")
 
 
 @pytest.fixture
 def bench(monkeypatch: pytest.MonkeyPatch) -> Iterator[Bench]:
-    monkeypatch.setattr(dask, "TICK_SECONDS", 0.005)
-    monkeypatch.setattr(dask, "WORKERS_SECONDS", 0.0)
-    monkeypatch.setattr(dask, "FIRST_PAUSE_SECONDS", 0.001)
-    monkeypatch.setattr(dask, "LONGEST_PAUSE_SECONDS", 0.004)
-    bench = Bench([Engine(), Engine()])
-    monkeypatch.setattr(dask, "Engine", bench.open)
-    yield bench
-    bench.executor.close()
+    with dispatching(monkeypatch) as bench:
+        yield bench
 
 
 def messages(caplog: pytest.LogCaptureFixture) -> list[tuple[int, str]]:
@@ -256,120 +147,6 @@ def test_a_job_whose_worker_is_killed_runs_once_more_before_the_others(bench: Be
         engine.tasks["a"].end("error", KILLED)
     bench.until(lambda: "b" in engine.tasks)
     assert bench.ended == [("a", LOST)]
-
-
-# Limits, on a clock of the test's
-
-
-class Clock:
-    def __init__(self) -> None:
-        self.now = 1000.0
-
-    def monotonic(self) -> float:
-        return self.now
-
-
-@pytest.fixture
-def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
-    clock = Clock()
-    monkeypatch.setattr(dask, "time", clock)
-    return clock
-
-
-@pytest.fixture
-def sent(bench: Bench, clock: Clock) -> Dispatched:
-    """A job on the worker; the dispatcher's thread is not running."""
-    executor = bench.executor
-    executor._open = True
-    executor.submit("a")
-    executor._keep_engine()
-    executor._fill()
-    return executor._runs["a"]
-
-
-@pytest.mark.parametrize(("more", "killed"), [(-0.01, False), (0.0, False), (0.01, True)])
-@pytest.mark.parametrize("began", [True, False])
-def test_a_job_that_takes_too_long_is_killed_with_its_worker(
-    bench: Bench, clock: Clock, sent: Dispatched, began: bool, more: float, killed: bool
-) -> None:
-    """Its time begins when the worker says so; one that says nothing is given as long as a start may take."""
-    engine = bench.engines[0]
-    clock.now += 7
-    if began:
-        bench.executor._on_progress({"job": "a", "worker": WORKER})
-    clock.now += LIMIT + GRACE_SECONDS + more + (0 if began else SILENCE_SECONDS - 7)
-    bench.executor._keep_limits()
-    assert sent.out_of_time is killed
-    assert engine.times("kill") == [WORKER] * killed
-    assert engine.times("forget") == ["a"] * killed
-    bench.executor._keep_limits()
-    assert engine.times("kill") == [WORKER] * killed  # once only
-
-
-@pytest.mark.parametrize(("after", "killed"), [(GRACE_SECONDS - 0.01, False), (GRACE_SECONDS + 0.01, True)])
-def test_a_cancelled_job_is_asked_politely_once_and_then_killed(
-    bench: Bench, clock: Clock, sent: Dispatched, after: float, killed: bool
-) -> None:
-    engine = bench.engines[0]
-    bench.executor.cancel("a")
-    bench.executor._keep_limits()
-    clock.now += after
-    bench.executor._keep_limits()
-    assert engine.times("stop") == ["a"]
-    assert engine.times("kill") == [WORKER] * killed
-    assert not sent.out_of_time
-
-
-def test_a_worker_that_was_killed_is_given_nothing_until_it_is_gone(
-    bench: Bench, clock: Clock, sent: Dispatched
-) -> None:
-    engine, executor = bench.engines[0], bench.executor
-    executor.cancel("a")
-    clock.now += GRACE_SECONDS + 1
-    executor._keep_limits()
-    executor._leave(sent)
-    executor.submit("b")
-    executor._fill()
-    assert "b" not in engine.tasks
-    engine.threads = {"tcp://another": 1}
-    clock.now += 1
-    executor._fill()
-    assert "b" in engine.tasks
-
-
-def test_the_workers_of_an_engine_are_asked_for_at_once_when_they_may_have_changed(
-    bench: Bench, clock: Clock, sent: Dispatched, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """When Dask says that one came or went, and when the engine is another one; else once in a while."""
-    monkeypatch.setattr(dask, "WORKERS_SECONDS", 5.0)
-    executor, (first, second) = bench.executor, bench.engines
-    for wait, times in ((4.9, 1), (0.1, 1), (0.1, 2)):
-        clock.now += wait
-        executor._fill()
-        assert len(first.times("workers")) == times
-    executor._on_workers()
-    executor._fill()
-    assert len(first.times("workers")) == 3
-    first.alive = False
-    executor._keep_engine()
-    executor._fill()
-    assert len(second.times("workers")) == 1
-    assert executor.ready
-
-
-def test_a_snapshot_has_what_the_worker_reported_and_the_seconds_since_it_began(
-    bench: Bench, clock: Clock, sent: Dispatched
-) -> None:
-    executor = bench.executor
-    clock.now += 3
-    assert executor.snapshot("a") == Snapshot(Status.RUNNING, elapsed=3.0)
-    executor._on_progress({"job": "a", "worker": WORKER})
-    clock.now += 2
-    executor._on_progress({"job": "a", "worker": WORKER, "stage": "spot", "fraction": 0.25})
-    clock.now += 2.5
-    assert executor.snapshot("a") == Snapshot(Status.RUNNING, fraction=0.25, stage="spot", elapsed=4.5)
-    executor._on_progress({"job": "of another service", "worker": WORKER})
-    assert executor.snapshot("of another service") is None
 
 
 def test_a_listener_that_fails_is_logged_and_the_dispatcher_goes_on(

@@ -6,7 +6,8 @@ import pytest
 from distributed.scheduler import KilledWorker
 
 from app.executor.dispatched import ATTEMPTS, Dispatched, verdict
-from app.executor.messages import BROKEN, LOST
+from app.executor.messages import LOST
+from app.experiments.failures import BROKEN
 
 KILLED = KilledWorker("task", None, 0)  # type: ignore[arg-type] # which worker it was is not looked at
 FAULT = RuntimeError("not for people")
@@ -31,14 +32,14 @@ FAULT = RuntimeError("not for people")
             "cancelled",
             None,
             0,
-            (False, "This run took longer than 7.5 seconds: make the texture smaller."),
+            (False, "Make the texture smaller: this run took longer than 7.5 seconds."),
         ),
         (
             {"out_of_time": True, "cancelled": 1.0},
             "error",
             KILLED,
             1,
-            (False, "This run took longer than 7.5 seconds: make the texture smaller."),
+            (False, "Make the texture smaller: this run took longer than 7.5 seconds."),
         ),
     ],
 )

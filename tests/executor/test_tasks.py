@@ -9,8 +9,8 @@ import pytest
 
 from app.errors import CancelledError, InvalidInputError, TimeLimitError
 from app.executor import tasks
-from app.executor.messages import BROKEN
 from app.executor.tasks import REPORT_SECONDS, Reporter, stop, work
+from app.experiments.failures import BROKEN
 from app.methods.context import Progress
 from app.settings import Settings
 

@@ -2,19 +2,25 @@
 
 import shutil
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
-from app.experiments.model import Sample
+from app.experiments.model import Experiment, Sample
 from app.experiments.service import Service
 from app.images.png_writer import encode_png
+from app.methods.context import Context
+from app.methods.model import Picture
+from app.methods.registry import METHODS
 from app.settings import Settings
 from app.store.blobs import FileBlobs
 from app.store.sql import SqlStore
 from app.worker import run_job
 from tests.executor.inline import InlineExecutor
+from tests.experiments.jobs import Breaking, submit
 
 OPERATOR = "the operator's own token"
 
@@ -84,3 +90,37 @@ def make_service(settings: Settings) -> Iterator[Callable[..., Service]]:
     yield making
     for service in made:
         service.close()
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Iterator[SqlStore]:
+    """A store without a service."""
+    store = SqlStore(f"sqlite:///{tmp_path}/alone.sqlite3")
+    yield store
+    store.close()
+
+
+@pytest.fixture
+def blobs(tmp_path: Path) -> FileBlobs:
+    return FileBlobs(tmp_path / "files")
+
+
+@pytest.fixture
+def queued(store: SqlStore, blobs: FileBlobs) -> Experiment:
+    """An experiment that no worker has begun."""
+    return submit(store, blobs)
+
+
+@pytest.fixture
+def broken(monkeypatch: pytest.MonkeyPatch) -> Breaking:
+    """Let the method raise what is given, after its first picture."""
+    original = METHODS["rpn"]
+
+    def breaking(error: BaseException) -> None:
+        def failing(sources: Any, params: Any, context: Context) -> Iterator[Picture]:
+            yield next(iter(original.run(sources, params, context)))
+            raise error
+
+        monkeypatch.setitem(METHODS, "rpn", replace(original, run=failing))
+
+    return breaking

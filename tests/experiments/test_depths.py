@@ -197,7 +197,7 @@ def test_deleting_the_experiment_ends_its_run_at_16_bits(
         try:
             while True:
                 running.set()
-                context.progress("for ever", 0.5)
+                context.progress("swap", 0.5)
         finally:
             stopped.set()
         yield

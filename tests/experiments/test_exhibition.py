@@ -93,7 +93,7 @@ def test_only_the_operator_may_delete_it_and_it_stays_deleted_until_made_again(f
 
 def test_what_failed_is_tried_again(service: Service, two: None, monkeypatch: pytest.MonkeyPatch) -> None:
     with monkeypatch.context() as broken:
-        broken.setattr("app.experiments.run.read_crop", lambda *args: 1 / 0)
+        broken.setattr("app.experiments.computation.read_crop", lambda *args: 1 / 0)
         assert service.exhibition.fill(threading.Event()).failed == 2
     assert service.exhibition.find(WAVES).status is Status.FAILED
     assert service.exhibition.fill(threading.Event()).made == 2

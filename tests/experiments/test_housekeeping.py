@@ -1,8 +1,6 @@
-"""Housekeeping removes what is old and unused, to the second, and no more; what fails is logged and tried again."""
+"""Housekeeping removes what is old and unused, to the second, and no more."""
 
-import logging
 import os
-import threading
 from collections.abc import Callable
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta, tzinfo
@@ -10,12 +8,11 @@ from pathlib import Path
 from typing import Any, Self
 
 import pytest
-from sqlalchemy.exc import OperationalError
 
 from app.errors import DeletedError, NotFoundError
 from app.experiments import housekeeping
 from app.experiments.files.cache import FileCache
-from app.experiments.housekeeping import PRUNE_SECONDS, RECORD_SECONDS, Housekeeping, Pruned
+from app.experiments.housekeeping import Housekeeping, Pruned
 from app.experiments.model import Experiment, Output, Sample, Status
 from app.store.blobs import FileBlobs
 from app.store.sql import SqlStore
@@ -24,7 +21,6 @@ from tests.store.records import a_sample, an_experiment, an_output
 NOW = datetime(2026, 3, 1, 12, tzinfo=UTC)
 SAMPLE_KEEP, LONGEST_RUN, OLDER_THAN = timedelta(hours=24), timedelta(hours=1), timedelta(days=30)
 SECOND = timedelta(seconds=1)
-ROUNDS = int(PRUNE_SECONDS / RECORD_SECONDS)  # of the loop from one pruning to the next
 CUT_OFF = pytest.mark.parametrize(
     ("age", "goes"),
     [(-SECOND, False), (timedelta(0), False), (SECOND, True)],
@@ -38,15 +34,9 @@ class Clock(datetime):
         return cls.fromtimestamp(NOW.timestamp(), tz)
 
 
-@pytest.fixture
-def store(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> SqlStore:
+@pytest.fixture(autouse=True)
+def clock(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(housekeeping, "datetime", Clock)
-    return SqlStore(f"sqlite:///{tmp_path}/texture.sqlite3")
-
-
-@pytest.fixture
-def blobs(tmp_path: Path) -> FileBlobs:
-    return FileBlobs(tmp_path / "files")
 
 
 @pytest.fixture
@@ -225,105 +215,3 @@ def test_one_that_its_owner_deletes_meanwhile_keeps_no_other_from_going(
     monkeypatch.setattr(store, "finished_before", lambda moment: [made[0].id, unknown, made[1].id, made[2].id])
     assert keeper.prune(OLDER_THAN).experiments == 2
     assert not any(is_there(store, each) for each in made)
-
-
-# By itself, every hour
-
-
-class Rounds(threading.Event):
-    """Closes after so many waits, and notes how long each was to be."""
-
-    def __init__(self, count: int, between: Callable[[int], None] = lambda number: None) -> None:
-        super().__init__()
-        self.count = count
-        self.between = between
-        self.waits: list[float | None] = []
-
-    def wait(self, timeout: float | None = None) -> bool:
-        if len(self.waits) == self.count:
-            return True
-        self.waits.append(timeout)
-        self.between(len(self.waits))
-        return False
-
-
-@pytest.mark.parametrize(("rounds", "times"), [(ROUNDS - 1, 0), (ROUNDS, 1), (2 * ROUNDS - 1, 1), (2 * ROUNDS, 2)])
-def test_it_prunes_every_hour_without_an_age(
-    keeper: Housekeeping, monkeypatch: pytest.MonkeyPatch, rounds: int, times: int
-) -> None:
-    pruned: list[timedelta | None] = []
-    monkeypatch.setattr(keeper, "prune", pruned.append)
-    closing = Rounds(rounds)
-    keeper.keep(closing)
-    assert pruned == [None] * times
-    assert set(closing.waits) == {RECORD_SECONDS}
-
-
-def test_pruning_that_fails_is_logged_and_tried_again_an_hour_later(
-    keeper: Housekeeping, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
-) -> None:
-    ages: list[timedelta | None] = []
-
-    def failing(age: timedelta | None) -> None:
-        ages.append(age)
-        raise OSError("the disk is gone")
-
-    monkeypatch.setattr(keeper, "prune", failing)
-    keeper.keep(Rounds(2 * ROUNDS))
-    assert ages == [None, None]
-    assert [record.message for record in caplog.records] == ["housekeeping failed; it will be tried again"] * 2
-    assert "the disk is gone" in caplog.text
-
-
-def outage() -> OperationalError:
-    return OperationalError("UPDATE experiments …", {}, Exception("database is locked"))
-
-
-def test_a_failure_that_the_database_does_not_take_is_logged_and_recorded_once_it_does(
-    keeper: Housekeeping,
-    store: SqlStore,
-    a_kept_sample: Callable[..., Sample],
-    monkeypatch: pytest.MonkeyPatch,
-    caplog: pytest.LogCaptureFixture,
-) -> None:
-    """The first attempt is the engine's; two more of the loop fail, the third is taken, and that is the last one."""
-    lost, other = (an_experiment(a_kept_sample()) for _ in range(2))
-    for experiment in (lost, other):
-        store.add(experiment)
-        store.start(experiment.id)
-    offered: list[str] = []
-    fail = store.fail
-
-    def taking(experiment_id: str, error: str) -> bool:
-        offered.append(experiment_id)
-        if len(offered) <= 4:
-            raise outage()
-        return fail(experiment_id, error)
-
-    monkeypatch.setattr(store, "fail", taking)
-    with caplog.at_level(logging.ERROR):
-        keeper.record_failure(lost.id, "Its worker was lost.")
-        keeper.record_failure(other.id, "It took too long.")
-    words = "the failure of experiment {} could not be recorded; it will be tried again"
-    assert [record.message for record in caplog.records] == [words.format(each.id) for each in (lost, other)]
-    assert all(record.exc_info for record in caplog.records)
-    assert store.get(lost.id).status is Status.RUNNING
-
-    keeper.keep(Rounds(4))
-    assert [record.message for record in caplog.records[2:]] == ["housekeeping failed; it will be tried again"] * 2
-    assert (store.get(lost.id).status, store.get(lost.id).error) == (Status.FAILED, "Its worker was lost.")
-    assert (store.get(other.id).status, store.get(other.id).error) == (Status.FAILED, "It took too long.")
-    assert offered == [lost.id, other.id, lost.id, lost.id, lost.id, other.id]
-
-
-def test_a_failure_that_the_database_takes_is_recorded_at_once_and_not_again(
-    keeper: Housekeeping, store: SqlStore, a_kept_sample: Callable[..., Sample], caplog: pytest.LogCaptureFixture
-) -> None:
-    experiment = an_experiment(a_kept_sample())
-    store.add(experiment)
-    keeper.record_failure(experiment.id, "Its worker was lost.")
-    recorded = store.get(experiment.id)
-    assert (recorded.status, recorded.error) == (Status.FAILED, "Its worker was lost.")
-    keeper.keep(Rounds(2))
-    assert store.get(experiment.id) == recorded
-    assert caplog.records == []

@@ -254,7 +254,7 @@ def test_a_failed_run_says_why(service: Service, sample: Sample, monkeypatch: py
     def failing(*_: object) -> None:
         raise MemoryError
 
-    monkeypatch.setattr("app.experiments.run.read_crop", failing)
+    monkeypatch.setattr("app.experiments.computation.read_crop", failing)
     experiment = finished(service, a_request(sample))
     assert experiment.status is Status.FAILED
     assert experiment.error is not None
