@@ -27,7 +27,7 @@ def size_of(difference):
     return float(np.sqrt(np.mean(np.square(difference, dtype=np.float64))))
 
 
-def steps(film, axis):
+def steps(video, axis):
     """Sizes of the steps from each place along an axis to the next, the last of them back to the first."""
-    film = np.moveaxis(np.asarray(film, np.float64), axis, 0)
-    return np.array([size_of(here - there) for here, there in zip(film, np.roll(film, -1, 0), strict=True)])
+    video = np.moveaxis(np.asarray(video, np.float64), axis, 0)
+    return np.array([size_of(here - there) for here, there in zip(video, np.roll(video, -1, 0), strict=True)])

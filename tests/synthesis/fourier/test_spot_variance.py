@@ -83,12 +83,12 @@ def test_a_discrete_spot_noise_and_the_ends_of_a_mixture_are_those_of_this_spot(
 
 @pytest.mark.parametrize(("window", "alpha"), [("bump", 0.1), ("gaussian", 0.5)])
 @pytest.mark.parametrize("shape", [(9, 48, 61), (6, 90, 61), (9, 100, 130), (4, 100, 61), (7, 20, 140)])
-def test_a_film_has_it_over_time_and_space(shape, window, alpha):
+def test_a_video_has_it_over_time_and_space(shape, window, alpha):
     """Against the clip's own RPN, whose modulus is that of its periodic component."""
-    film = np.stack([coarse(*CROP, seed=seed) for seed in range(6)]) + coarse(*CROP, seed=9)
-    cut = [slice(max(0, (have - asked) // 2), None) for have, asked in zip(film.shape, shape, strict=False)]
-    taken = film[tuple(cut)][tuple(slice(0, asked) for asked in shape)]
-    z = video_rpn(film, *shape, alpha=alpha, window=window)
+    video = np.stack([coarse(*CROP, seed=seed) for seed in range(6)]) + coarse(*CROP, seed=9)
+    cut = [slice(max(0, (have - asked) // 2), None) for have, asked in zip(video.shape, shape, strict=False)]
+    taken = video[tuple(cut)][tuple(slice(0, asked) for asked in shape)]
+    z = video_rpn(video, *shape, alpha=alpha, window=window)
     assert variance(z) == pytest.approx(variance(video_rpn(taken)), rel=1e-3)
 
 

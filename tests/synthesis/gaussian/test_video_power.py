@@ -18,26 +18,26 @@ def clip(frames, height, width, channels=3, seed=0):
     return (still + moving + 3 * np.arange(frames)[:, None, None, None]).astype(np.float32)
 
 
-def field_of(film, shape, seed=2):
+def field_of(video, shape, seed=2):
     def progress(stage, part):
         pass
 
     with Team(2) as team:
-        return VideoNoiseField(film, shape, seed=seed, alpha=0.1, profile="bump", team=team, progress=progress)
+        return VideoNoiseField(video, shape, seed=seed, alpha=0.1, profile="bump", team=team, progress=progress)
 
 
-def squares(film):
+def squares(video):
     """Squared moduli of all frequencies, the mean apart, summed over the channels: (T, H, W)."""
-    film = film.astype(np.float64)
-    return np.square(np.abs(np.fft.fftn(film - film.mean((0, 1, 2)), axes=(0, 1, 2)))).sum(-1)
+    video = video.astype(np.float64)
+    return np.square(np.abs(np.fft.fftn(video - video.mean((0, 1, 2)), axes=(0, 1, 2)))).sum(-1)
 
 
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("size", [None, (9, 12, 14), (5, 10, 9)])
 def test_what_is_shown_of_a_texture_is_the_plain_power_of_its_values(shape, size):
     """The picture over space, the picture over time, and the part of the variance that stands still."""
-    film = clip(*shape)
-    field = field_of(film, size or shape)
+    video = clip(*shape)
+    field = field_of(video, size or shape)
     z = np.stack(list(field.frames()))
     power = squares(z)
     columns = field.shape[2] // 2 + 1
@@ -68,8 +68,8 @@ def test_a_video_without_contrast_stands_still_altogether():
 
 @pytest.mark.parametrize("shape", SHAPES)
 def test_the_variance_is_that_of_the_video_whose_spectrum_it_was_given(shape):
-    film = clip(*shape)
-    centred = film - film.mean((0, 1, 2), dtype=np.float64)
+    video = clip(*shape)
+    centred = video - video.mean((0, 1, 2), dtype=np.float64)
     spectrum = np.fft.rfftn(centred, axes=(0, 1, 2)).astype(np.complex64)
     frames, height, width = shape
     power = VideoPower((frames, height, width // 2 + 1), width)

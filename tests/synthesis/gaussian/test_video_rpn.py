@@ -1,4 +1,4 @@
-"""RPN in three dimensions keeps the modulus over time and space, stands still where the film does, loops and tiles."""
+"""RPN in three dimensions keeps the modulus over time and space, stands still where the video does, loops and tiles."""
 
 import itertools
 
@@ -26,10 +26,10 @@ def clip(frames, height, width, channels=3, seed=0):
     return (0.4 * still + 0.4 * moving + ramp).astype(np.float32)
 
 
-def periodic(film):
+def periodic(video):
     """What the module's docstring says, in double precision and all at once."""
-    frames, height, width, _ = film.shape
-    p = np.stack([periodic_component(frame).astype(np.float64) for frame in film])
+    frames, height, width, _ = video.shape
+    p = np.stack([periodic_component(frame).astype(np.float64) for frame in video])
     jump = np.fft.fft2(p[0] - p[-1], axes=(0, 1))
     k, down, across = (
         2 * np.pi * np.fft.fftfreq(side).reshape(shape)
@@ -40,12 +40,12 @@ def periodic(film):
     return p - np.fft.ifftn((1 - np.exp(1j * k)) * jump / below, axes=(0, 1, 2)).real
 
 
-def spot(film, shape, alpha=0.1, profile="bump"):
+def spot(video, shape, alpha=0.1, profile="bump"):
     """The extended spot frame by frame, double precision."""
-    p = periodic(centre_video(film, shape))
+    p = periodic(centre_video(video, shape))
     if p.shape[:3] == shape:
         return p
-    count, channels = len(p), film.shape[3]
+    count, channels = len(p), video.shape[3]
     phi = [
         window(have, alpha, profile) if asked > have else np.ones(have)
         for asked, have in zip(shape, p.shape, strict=False)
@@ -73,45 +73,45 @@ def spot(film, shape, alpha=0.1, profile="bump"):
     return extended + p.mean((0, 1, 2))
 
 
-def spectrum(film):
-    found = np.fft.rfftn(film.astype(np.float64), axes=(0, 1, 2))
+def spectrum(video):
+    found = np.fft.rfftn(video.astype(np.float64), axes=(0, 1, 2))
     found[0, 0, 0] = 0
     return found
 
 
-def keeps(film, z, *options):
+def keeps(video, z, *options):
     """Assert that moduli, differences of phases between channels and the mean are the spot's."""
-    before, after = spectrum(spot(film, z.shape[:3], *options)), spectrum(z)
+    before, after = spectrum(spot(video, z.shape[:3], *options)), spectrum(z)
     scale = max(np.abs(before).max(), 1e-3)
     np.testing.assert_allclose(np.abs(after), np.abs(before), atol=2e-4 * scale)
-    for c, d in itertools.combinations(range(film.shape[3]), 2):
+    for c, d in itertools.combinations(range(video.shape[3]), 2):
         np.testing.assert_allclose(
             after[..., c] * after[..., d].conj(), before[..., c] * before[..., d].conj(), atol=4e-4 * scale**2
         )
-    expected = centre_video(film, z.shape[:3]).mean((0, 1, 2), dtype=np.float64)
+    expected = centre_video(video, z.shape[:3]).mean((0, 1, 2), dtype=np.float64)
     np.testing.assert_allclose(z.mean((0, 1, 2), dtype=np.float64), expected, rtol=1e-6)
 
 
 @pytest.mark.parametrize("shape", SHAPES)
 def test_modulus_mean_and_phase_differences_are_those_of_the_clip(shape):
-    film = clip(*shape)
-    z = video_rpn(film, seed=1)
-    assert (z.shape, z.dtype) == (film.shape, np.float32)
-    keeps(film, z)
+    video = clip(*shape)
+    z = video_rpn(video, seed=1)
+    assert (z.shape, z.dtype) == (video.shape, np.float32)
+    keeps(video, z)
 
 
 @settings(max_examples=examples(40))
 @given(st.tuples(*[st.integers(1, 12)] * 6), st.integers(1, 4), st.integers(0, 2**53 - 1))
 def test_at_any_other_size_they_are_those_of_the_extended_spot(sizes, channels, seed):
-    film = clip(*sizes[:3], channels)
-    keeps(film, video_rpn(film, *sizes[3:], seed=seed))
+    video = clip(*sizes[:3], channels)
+    keeps(video, video_rpn(video, *sizes[3:], seed=seed))
 
 
 @pytest.mark.parametrize("profile", ["bump", "gaussian"])
 @pytest.mark.parametrize("alpha", [0, 0.3, 0.5])
 def test_with_every_window_they_are_those_of_the_spot_extended_with_it(profile, alpha):
-    film = clip(8, 12, 11)
-    keeps(film, video_rpn(film, 13, 20, 17, seed=2, alpha=alpha, window=profile), alpha, profile)
+    video = clip(8, 12, 11)
+    keeps(video, video_rpn(video, 13, 20, 17, seed=2, alpha=alpha, window=profile), alpha, profile)
 
 
 @pytest.mark.parametrize("shape", [(4, 6, 8), (5, 7, 11), (6, 5, 4)])
@@ -129,7 +129,7 @@ def test_what_is_taken_out_is_the_poisson_problem_of_the_jump(shape):
 
 
 @pytest.mark.parametrize("shape", [(6, 20, 24), (10, 20, 24), (3, 20, 24), (9, 31, 40)])
-def test_a_film_that_stands_still_becomes_the_rpn_of_its_picture_and_stands_still(shape):
+def test_a_video_that_stands_still_becomes_the_rpn_of_its_picture_and_stands_still(shape):
     """Its modulus lives at the frequency 0 in time, where the phase is that of RPN at this seed."""
     h = image(20, 24)
     z = video_rpn(np.repeat(h[None], 6, axis=0), *shape, seed=5)
@@ -137,16 +137,16 @@ def test_a_film_that_stands_still_becomes_the_rpn_of_its_picture_and_stands_stil
 
 
 @pytest.mark.parametrize("shape", [(4, 6, 8), (7, 9, 8), (3, 11, 5)])
-def test_a_constant_film_gives_itself_back(shape):
-    film = np.full((4, 6, 8, 3), (0, 77.1, 255), np.float32)
-    assert (video_rpn(film, *shape) == film[0, 0, 0]).all()
+def test_a_constant_video_gives_itself_back(shape):
+    video = np.full((4, 6, 8, 3), (0, 77.1, 255), np.float32)
+    assert (video_rpn(video, *shape) == video[0, 0, 0]).all()
 
 
 def test_a_light_that_pulsates_pulsates_everywhere_alike():
-    """A film that is constant over space stays so, at any size: what does not change with place is no spot."""
+    """A video that is constant over space stays so, at any size: what does not change with place is no spot."""
     light = 100 + 50 * np.cos(2 * np.pi * (np.arange(16) + 0.5) * 3 / 16)
-    film = np.broadcast_to(light[:, None, None, None], (16, 8, 9, 1)).astype(np.float32)
-    z = video_rpn(film, 16, 20, 9, seed=2)
+    video = np.broadcast_to(light[:, None, None, None], (16, 8, 9, 1)).astype(np.float32)
+    z = video_rpn(video, 16, 20, 9, seed=2)
     np.testing.assert_allclose(z, np.broadcast_to(z[:, :1, :1], z.shape), atol=1e-3)
     assert z.std() == pytest.approx(light.std(), rel=0.01)
 
@@ -162,8 +162,8 @@ def drift(frames, height, width, step=0.5, correlation=3.0, seed=0):
 
 
 def test_what_moves_goes_on_moving_with_its_velocity():
-    film = drift(32, 64, 64, step=1)
-    z = video_rpn(film, seed=4)[..., 0]
+    video = drift(32, 64, 64, step=1)
+    z = video_rpn(video, seed=4)[..., 0]
     following, standing = (
         np.corrcoef((z[1:]).ravel(), np.roll(z[:-1], shift, axis=2).ravel())[0, 1] for shift in (1, 0)
     )
@@ -174,10 +174,10 @@ def test_what_moves_goes_on_moving_with_its_velocity():
 def test_the_loop_has_no_jump_and_the_whole_no_flicker():
     """The clip's own jump, between uncorrelated frames, has 100 times the mean square of a step, and so had the noise's
     steps 100 / 24 times that of the clip's."""
-    film = drift(24, 48, 56, step=0.25, correlation=5)
-    z = video_rpn(film, seed=1)[..., 0]
-    own, inside = np.mean(np.diff(film, axis=0) ** 2), np.mean(np.diff(z, axis=0) ** 2)
-    assert np.mean((film[-1] - film[0]) ** 2) > 20 * own
+    video = drift(24, 48, 56, step=0.25, correlation=5)
+    z = video_rpn(video, seed=1)[..., 0]
+    own, inside = np.mean(np.diff(video, axis=0) ** 2), np.mean(np.diff(z, axis=0) ** 2)
+    assert np.mean((video[-1] - video[0]) ** 2) > 20 * own
     assert inside < 1.1 * own
     assert np.mean((z[-1] - z[0]) ** 2) < 2 * inside
 
@@ -199,35 +199,35 @@ def test_variance_and_correlation_in_time_are_kept_at_a_larger_size():
     """
     correlations = []
     for seed in range(16):
-        film = drift(24, 48, 48, step=1, correlation=1.0, seed=seed)
-        z = video_rpn(film, 50, 80, 80, seed=seed, threads=2)
-        assert z.var() == pytest.approx(periodic(film).var(), rel=1e-3)
+        video = drift(24, 48, 48, step=1, correlation=1.0, seed=seed)
+        z = video_rpn(video, 50, 80, 80, seed=seed, threads=2)
+        assert z.var() == pytest.approx(periodic(video).var(), rel=1e-3)
         correlations.append(
-            np.subtract(*(np.corrcoef(each[1:].ravel(), each[:-1].ravel())[0, 1] for each in (z, film)))
+            np.subtract(*(np.corrcoef(each[1:].ravel(), each[:-1].ravel())[0, 1] for each in (z, video)))
         )
     assert abs(np.mean(correlations)) < 4 * np.std(correlations) / np.sqrt(len(correlations)) + 0.04
 
 
 def test_a_smaller_texture_is_that_of_the_clips_centre():
-    film = clip(9, 14, 13)
-    z = video_rpn(film, 4, 8, 7, seed=6)
-    assert (z == video_rpn(np.ascontiguousarray(film[2:6, 3:11, 3:10]), seed=6)).all()
+    video = clip(9, 14, 13)
+    z = video_rpn(video, 4, 8, 7, seed=6)
+    assert (z == video_rpn(np.ascontiguousarray(video[2:6, 3:11, 3:10]), seed=6)).all()
 
 
 @pytest.mark.parametrize("shape", [(6, 20, 22), (9, 31, 22)])
 def test_the_result_depends_on_the_seed_and_not_on_the_threads(shape):
-    film = clip(6, 20, 22)
-    one = video_rpn(film, *shape, seed=3)
-    assert (video_rpn(film, *shape, seed=3, threads=2) == one).all()
-    assert (video_rpn(film, *shape, seed=4) != one).mean() > 0.99
+    video = clip(6, 20, 22)
+    one = video_rpn(video, *shape, seed=3)
+    assert (video_rpn(video, *shape, seed=3, threads=2) == one).all()
+    assert (video_rpn(video, *shape, seed=4) != one).mean() > 0.99
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
 def test_values_that_are_not_finite_are_refused(bad):
-    film = clip(3, 4, 5)
-    film[1, 2, 3, 0] = bad
+    video = clip(3, 4, 5)
+    video[1, 2, 3, 0] = bad
     with pytest.raises(ValueError, match="not finite"):
-        video_rpn(film)
+        video_rpn(video)
 
 
 @pytest.mark.parametrize("stop_at", [1, 5, 20])

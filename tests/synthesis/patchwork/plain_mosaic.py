@@ -19,9 +19,9 @@ def points_of(rng, shape, clip, grid, interval, wraps):
     return points, sources.T
 
 
-def frame_of(film, shape, points, sources, number, *, grid, interval, sharpness, wraps, ends):
+def frame_of(video, shape, points, sources, number, *, grid, interval, sharpness, wraps, ends):
     """A frame (H, W) of one channel: Σ w (I − a) / √Σ w² + a with w = d^(−f), less R^(−f) where the weights end."""
-    total, squares, mean = np.zeros(shape[1:]), np.zeros(shape[1:]), film.mean()
+    total, squares, mean = np.zeros(shape[1:]), np.zeros(shape[1:]), video.mean()
     for point, source in zip(points.T, sources, strict=True):
         away = [np.array([number]) - point[0], np.arange(shape[1]) - point[1], np.arange(shape[2]) - point[2]]
         for axis, circular in enumerate(wraps):
@@ -32,7 +32,7 @@ def frame_of(film, shape, points, sources, number, *, grid, interval, sharpness,
         weight = np.maximum(d, 0.03) ** -float(sharpness)
         if ends:
             weight = np.maximum(weight - (1.75 * grid) ** -float(sharpness), 0)
-        places = [mirrored(a + q, n) for a, q, n in zip(away, source, film.shape, strict=False)]
-        total += (film[np.ix_(*places)][0, :, :, 0] - mean) * weight
+        places = [mirrored(a + q, n) for a, q, n in zip(away, source, video.shape, strict=False)]
+        total += (video[np.ix_(*places)][0, :, :, 0] - mean) * weight
         squares += weight**2
     return total / np.sqrt(squares) + mean

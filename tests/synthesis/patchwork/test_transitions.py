@@ -73,13 +73,13 @@ def test_mean_and_deviation_are_the_clips_in_every_frame_also_amid_transitions(l
     would have the deviation 0.71 amid a transition.
     """
     rng = np.random.default_rng(1)
-    film = rng.standard_normal((72, 4000))
-    average = film.mean(0)
+    video = rng.standard_normal((72, 4000))
+    average = video.mean(0)
     transitions = drawn(60, 72, 72, 18, loop)
     amid = []
     for frame in range(0, 72, 5):
         mix = transitions.mix(frame)
-        first, second = film[mix.first] - average, film[mix.second] - average
+        first, second = video[mix.first] - average, video[mix.second] - average
         made = mix.alpha[:, None] * first + mix.beta[:, None] * second
         assert abs(made.mean()) < 0.02
         assert made.std() == pytest.approx(1, abs=0.04)

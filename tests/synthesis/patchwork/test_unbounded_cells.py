@@ -205,24 +205,24 @@ def still(frames=12, height=90, width=80):
 @pytest.mark.parametrize("tileable", [True, False])
 def test_a_frame_of_a_video_patchwork_is_the_sum_over_every_cell(sharpness, tileable):
     """Of a still clip each frame is the patchwork of its picture."""
-    film = still()
+    video = still()
     near, cells = laid(64, 72, 8, sharpness, tileable)
     sources = near.sources(90, 80, 3)
     rng = np.random.default_rng(0)
-    mean = film.mean((0, 1, 2), np.float64)
+    mean = video.mean((0, 1, 2), np.float64)
     transitions = Transitions(near.count, 12, 12, 4, loop=True, rng=rng)
     means = np.tile(mean.astype(np.float32), (near.count, 1))
-    made = VideoPatchwork(PaddedClip(film, cells.margin(sources, 90, 80)), cells, sources, transitions, means)
-    expected = patchwork_sum(film[0], near, sources, tileable, mean)
+    made = VideoPatchwork(PaddedClip(video, cells.margin(sources, 90, 80)), cells, sources, transitions, means)
+    expected = patchwork_sum(video[0], near, sources, tileable, mean)
     assert deviation(made.frame(5), expected) < HALF_A_LEVEL
 
 
 @pytest.mark.parametrize("sharpness", SHARPNESSES)
 def test_a_frame_of_a_video_transfer_is_equation_seven_with_every_cell(sharpness):
-    film = still()
+    video = still()
     near, cells = laid(64, 72, 8, sharpness, False)
     places = near.sources(90, 80, 3)
     transitions = Transitions(near.count, 12, 12, 4, loop=True, rng=np.random.default_rng(0))
-    made = VideoPatchwork(PaddedClip(film, cells.margin(places, 90, 80)), cells, places, transitions)
-    expected, _ = transfer_sum(film[0], near, places)
+    made = VideoPatchwork(PaddedClip(video, cells.margin(places, 90, 80)), cells, places, transitions)
+    expected, _ = transfer_sum(video[0], near, places)
     assert deviation(made.frame(5), expected) < HALF_A_LEVEL

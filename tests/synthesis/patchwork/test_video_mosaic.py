@@ -12,16 +12,16 @@ from tests.synthesis.videos import noise, size_of, steps, still, waves
 SIZE = 64
 
 
-def mosaic(film, frames=40, *, size=SIZE, interval=10, loop=True, tileable=True, sharpness=6, seed=4):
+def mosaic(video, frames=40, *, size=SIZE, interval=10, loop=True, tileable=True, sharpness=6, seed=4):
     rng = np.random.default_rng(seed)
-    planes, shape = PaddedClip(film).planes, (frames, size, size)
+    planes, shape = PaddedClip(video).planes, (frames, size, size)
     return VideoMosaic(
         planes, shape, grid=16, interval=interval, sharpness=sharpness, loop=loop, tileable=tileable, rng=rng
     )
 
 
-def made(film, frames=40, **options):
-    synthesis = mosaic(film, frames, **options)
+def made(video, frames=40, **options):
+    synthesis = mosaic(video, frames, **options)
     return np.stack([synthesis.frame(number) for number in range(frames)])
 
 
@@ -31,8 +31,8 @@ def test_mean_and_deviation_are_the_clips_in_cores_and_in_joins():
     Painting the cells black and white tells where they join: in between, where feathering would leave about half of
     the variance.
     """
-    film = noise()
-    synthesis = mosaic(film)
+    video = noise()
+    synthesis = mosaic(video)
     colours = np.random.default_rng(1).choice([0.0, 1.0], (len(synthesis.sources), 1)).astype(np.float32)
     frames = range(0, 40, 5)
     out = np.stack([synthesis.frame(number)[..., 0] for number in frames])
@@ -41,16 +41,16 @@ def test_mean_and_deviation_are_the_clips_in_cores_and_in_joins():
     joins = np.abs(painted - 0.5) < 0.1
     assert joins.sum() > 1000
     for where in (joins, ~joins):
-        assert out[where].mean() == pytest.approx(film.mean(), abs=2)
-        assert out[where].std() == pytest.approx(film.std(), rel=0.05)
+        assert out[where].mean() == pytest.approx(video.mean(), abs=2)
+        assert out[where].std() == pytest.approx(video.std(), rel=0.05)
 
 
 def test_what_stands_still_in_the_clip_does_not_in_the_mosaic():
     """Frames further apart than patches last have nothing to do with each other; near ones do."""
-    film = still(channels=1)
-    out = made(film)
-    assert size_of(out[20] - out[0]) == pytest.approx(np.sqrt(2) * film.std(), rel=0.1)
-    assert 0 < size_of(out[1] - out[0]) < 0.5 * film.std()
+    video = still(channels=1)
+    out = made(video)
+    assert size_of(out[20] - out[0]) == pytest.approx(np.sqrt(2) * video.std(), rel=0.1)
+    assert 0 < size_of(out[1] - out[0]) < 0.5 * video.std()
 
 
 def test_in_a_loop_the_step_from_the_last_frame_to_the_first_is_like_any_other():
@@ -70,19 +70,19 @@ def test_tileable_frames_have_no_seam(axis):
 @pytest.mark.parametrize("sharpness", [1, 40])
 def test_a_clip_as_large_as_is_needed_is_large_enough_whatever_the_seed(loop, tileable, sharpness):
     side, length = least_length(70, 16), least_length(30, 5)
-    film = noise(length, side, side)
+    video = noise(length, side, side)
     for seed in range(3):
-        synthesis = mosaic(film, 30, size=70, interval=5, loop=loop, tileable=tileable, sharpness=sharpness, seed=seed)
+        synthesis = mosaic(video, 30, size=70, interval=5, loop=loop, tileable=tileable, sharpness=sharpness, seed=seed)
         out = np.stack([synthesis.frame(number) for number in (0, 17)])
         assert np.isfinite(out).all()
         assert out.std() > 10
     with pytest.raises(ValueError, match="low >= high"):
-        mosaic(film[:, 1:], 30, size=70, interval=5, loop=loop, tileable=True)
+        mosaic(video[:, 1:], 30, size=70, interval=5, loop=loop, tileable=True)
 
 
 def test_a_constant_clip_gives_that_constant():
-    film = np.full((40, SIZE, SIZE, 3), (10, 100, 250), np.uint8)
-    assert np.abs(mosaic(film).frame(3) - (10, 100, 250)).max() < 0.01
+    video = np.full((40, SIZE, SIZE, 3), (10, 100, 250), np.uint8)
+    assert np.abs(mosaic(video).frame(3) - (10, 100, 250)).max() < 0.01
 
 
 def test_cells_are_painted_alike_in_any_window():
@@ -100,15 +100,15 @@ def test_cells_are_painted_alike_in_any_window():
 @pytest.mark.parametrize(("loop", "tileable"), [(True, True), (False, False), (True, False)])
 def test_a_frame_is_the_plain_sum_over_the_points_with_every_option(sharpness, reach, loop, tileable):
     """Every point of space and time, or those with weights that end: for near points only, and from f = 6 on."""
-    film = noise(30, 60, 62, seed=2)
+    video = noise(30, 60, 62, seed=2)
     shape, grid, interval, wraps = (18, 48, 50), 16, 6, (loop, tileable, tileable)
     made = VideoMosaic(
-        PaddedClip(film).planes, shape, grid=grid, interval=interval, sharpness=sharpness, loop=loop, tileable=tileable,
-        rng=np.random.default_rng(0), reach=reach,
+        PaddedClip(video).planes, shape, grid=grid, interval=interval, sharpness=sharpness,
+        loop=loop, tileable=tileable, rng=np.random.default_rng(0), reach=reach,
     )  # fmt: skip
-    points, sources = points_of(np.random.default_rng(0), shape, film.shape[:3], grid, interval, wraps)
+    points, sources = points_of(np.random.default_rng(0), shape, video.shape[:3], grid, interval, wraps)
     assert (made.sources == sources).all()
     options = {"grid": grid, "interval": interval, "sharpness": sharpness, "wraps": wraps}
     for number in (0, 7):
-        expected = frame_of(film, shape, points, sources, number, ends=reach == "near" or sharpness >= 6, **options)
+        expected = frame_of(video, shape, points, sources, number, ends=reach == "near" or sharpness >= 6, **options)
         assert np.abs(made.frame(number)[:, :, 0] - expected).max() < 0.5

@@ -19,21 +19,21 @@ def laid(grid=16, sharpness=6, tileable=True, size=SIZE):
     return jittered_cells(size, size, grid=grid, sharpness=sharpness, tileable=tileable, seed=3)
 
 
-def in_time(film, cells, frames=40, loop=True):
-    return Transitions(cells.count, len(film), frames, 10, loop=loop, rng=np.random.default_rng(4))
+def in_time(video, cells, frames=40, loop=True):
+    return Transitions(cells.count, len(video), frames, 10, loop=loop, rng=np.random.default_rng(4))
 
 
-def patchwork(film, cells, frames=40, loop=True):
-    _, height, width, channels = film.shape
+def patchwork(video, cells, frames=40, loop=True):
+    _, height, width, channels = video.shape
     sources = cells.sources(height, width, 3)
-    mean = film.mean((0, 1, 2)).astype(np.float32)
-    clip = PaddedClip(film, cells.margin(sources, height, width))
+    mean = video.mean((0, 1, 2)).astype(np.float32)
+    clip = PaddedClip(video, cells.margin(sources, height, width))
     means = np.broadcast_to(mean, (cells.count, channels))
-    return VideoPatchwork(clip, cells, sources, in_time(film, cells, frames, loop), means)
+    return VideoPatchwork(clip, cells, sources, in_time(video, cells, frames, loop), means)
 
 
-def made(film, cells, frames=40, loop=True):
-    synthesis = patchwork(film, cells, frames, loop)
+def made(video, cells, frames=40, loop=True):
+    synthesis = patchwork(video, cells, frames, loop)
     return np.stack([synthesis.frame(number) for number in range(frames)])
 
 
@@ -52,55 +52,55 @@ def test_mean_and_deviation_of_every_pixel_over_time_are_the_clips_in_cores_and_
     In the joins, where no patch has more than 0.6 of a pixel, feathering would leave at most 0.6² + 0.4² = 0.52 of the
     variance, and amid a transition half of that.
     """
-    film, cells = noise(), laid()
-    out, shares = made(film, cells), largest_shares(cells)
+    video, cells = noise(), laid()
+    out, shares = made(video, cells), largest_shares(cells)
     for where in (shares > 0.95, shares < 0.6, np.ones_like(shares, bool)):
         pixels = out[:, where]
         assert where.sum() > 300
-        assert pixels.mean() == pytest.approx(film.mean(), abs=1.5)
+        assert pixels.mean() == pytest.approx(video.mean(), abs=1.5)
         over_time = np.sqrt(pixels.var(0).mean())
-        assert over_time == pytest.approx(np.sqrt(film.var(0).mean()), rel=0.06)
+        assert over_time == pytest.approx(np.sqrt(video.var(0).mean()), rel=0.06)
 
 
 def test_the_mean_over_time_is_the_patchwork_of_the_average_image():
     """The clip's deviation is 6, its average image's 40. Of 160 frames made of 40 the mean is known to 2 or so."""
     structure = np.random.default_rng(5).normal(128, 40, (1, SIZE, SIZE, 1))
-    film = (
+    video = (
         (structure + np.random.default_rng(6).normal(0, 6, (40, SIZE, SIZE, 1))).round().clip(0, 255).astype(np.uint8)
     )
     cells = laid()
-    out = made(film, cells, frames=160)
-    static = made(np.repeat(film.mean(0)[None].round().astype(np.uint8), 40, 0), cells, frames=2)[0]
+    out = made(video, cells, frames=160)
+    static = made(np.repeat(video.mean(0)[None].round().astype(np.uint8), 40, 0), cells, frames=2)[0]
     assert size_of(out.mean(0) - static) < 3
     assert static.std() > 30
 
 
 def test_a_clip_that_stands_still_comes_out_still_and_exactly_copied_at_the_centres():
-    film, cells = still(), laid()
-    out, sources = made(film, cells), cells.sources(SIZE, SIZE, 3)
+    video, cells = still(), laid()
+    out, sources = made(video, cells), cells.sources(SIZE, SIZE, 3)
     assert np.abs(out - out[0]).max() < 0.01
     inside = [index for index, (y, x) in enumerate(cells.centres) if 0 <= y < SIZE and 0 <= x < SIZE]
     assert len(inside) == cells.count
     for (y, x), (from_y, from_x) in zip(cells.centres[inside], sources[cells.cell[inside]], strict=True):
-        assert np.abs(out[0, y, x] - film[0, from_y, from_x]).max() < 0.5
+        assert np.abs(out[0, y, x] - video[0, from_y, from_x]).max() < 0.5
 
 
 def test_each_frame_of_a_still_clip_is_the_patchwork_of_its_frame():
-    film, cells = still(), laid()
-    expected = Patchwork(film[0].astype(np.float32), cells, seed=3).rows(0, SIZE)
+    video, cells = still(), laid()
+    expected = Patchwork(video[0].astype(np.float32), cells, seed=3).rows(0, SIZE)
     expected = np.moveaxis(expected, 0, 2) if len(expected) == 3 else expected
-    assert np.abs(made(film, cells, frames=3)[2] - expected).max() < 0.5
+    assert np.abs(made(video, cells, frames=3)[2] - expected).max() < 0.5
 
 
 def test_local_means_give_the_transfer_of_a_still_clips_frame():
-    film, cells = still(height=90, width=80), laid(grid=8, sharpness=2, tileable=False)
+    video, cells = still(height=90, width=80), laid(grid=8, sharpness=2, tileable=False)
     pattern = 128 + 50 * np.random.default_rng(7).random((SIZE, SIZE, 3), np.float32)
     with Team(2) as team:
         work = Work(team, lambda stage, part: None)
-        expected = transfer(film[0].astype(np.float32), pattern, cells, peak=255, candidates=20, seed=1, work=work)
+        expected = transfer(video[0].astype(np.float32), pattern, cells, peak=255, candidates=20, seed=1, work=work)
     places = expected.matches.places
-    clip = PaddedClip(film, cells.margin(places, 90, 80))
-    frame = VideoPatchwork(clip, cells, places, in_time(film, cells)).frame(11)
+    clip = PaddedClip(video, cells.margin(places, 90, 80))
+    frame = VideoPatchwork(clip, cells, places, in_time(video, cells)).frame(11)
     assert np.abs(frame.clip(0, 255) - expected.output).max() < 1
 
 
