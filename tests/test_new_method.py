@@ -26,6 +26,7 @@ RUN_OVER_ALL = (
     "tests/methods/test_registry.py",
     "tests/methods/test_outputs.py",
     "tests/methods/test_depths.py",
+    "tests/methods/test_stages.py",
     "tests/test_docs.py",
     "tests/test_architecture.py",
 )
@@ -104,7 +105,7 @@ def test_its_types_are_right(scaffolded: Path) -> None:
 
 
 def test_it_passes_its_own_tests_and_those_that_every_method_passes(scaffolded: Path) -> None:
-    """Those of the registry, of what is announced, of the documents and of the architecture."""
+    """Those of the registry, of what is announced, of the stages, of the documents and of the architecture."""
     selected = in_copy(
         scaffolded,
         *("-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "no:xdist"),
