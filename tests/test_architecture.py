@@ -150,3 +150,9 @@ for module in {SYNTHESIS!r}:
 """
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False, cwd=ROOT)
     assert done.stdout.split() == SYNTHESIS, done.stderr
+
+
+@pytest.mark.parametrize("directory", ["app", "static", "templates", "scripts", "benchmarks"])
+def test_no_file_has_more_than_300_lines(directory: str) -> None:
+    files = (path for path in (ROOT / directory).rglob("*") if path.suffix in {".py", ".js", ".css", ".html"})
+    assert {path.name: lines for path in files if (lines := len(path.read_text("utf-8").splitlines())) > 300} == {}
