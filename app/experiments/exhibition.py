@@ -26,13 +26,13 @@ POLL_SECONDS = 0.1
 
 
 def is_exhibit(experiment: Experiment) -> bool:
-    """Whether it is the program's own: public though the archive does not list it."""
+    """Whether an experiment is an exhibit: public though the archive does not list it."""
     return experiment.owner == OWNER
 
 
 @dataclass(frozen=True)
 class Filled:
-    """How many exhibits were made, could not be, were there already, and lack their sample in this installation."""
+    """Numbers of exhibits that were made, failed, were there already, and lack their sample in this installation."""
 
     made: int = 0
     failed: int = 0
@@ -69,7 +69,7 @@ class Exhibition:
         """Whether what is missing is about to be made here."""
 
     def keep(self, closing: threading.Event) -> None:
-        """Bring the bundled samples in and then, where the settings want it, make what is missing, one at a time."""
+        """Take in the bundled samples and then, where the settings want it, make what is missing, one at a time."""
         try:
             self._samples.add_bundled(closing)
         finally:

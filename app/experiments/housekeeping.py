@@ -21,7 +21,7 @@ BATCH = 500  # files looked at under one lock, so that nobody waits long for it
 
 @dataclass(frozen=True)
 class Pruned:
-    """How many went."""
+    """Numbers of what was removed."""
 
     experiments: int
     samples: int
@@ -38,7 +38,7 @@ class Housekeeping:
     sample_keep : timedelta
         How long an upload without an experiment is kept.
     longest_run : timedelta
-        After this long nothing half-made belongs to anybody.
+        After this long what is half-made was left behind by a killed process.
     """
 
     def __init__(
@@ -58,7 +58,7 @@ class Housekeeping:
         self._unrecorded: dict[str, str] = {}
 
     def keep(self, closing: threading.Event) -> None:
-        """Prune every hour, and offer the database again what it did not take, until told to stop."""
+        """Prune every hour, and offer the database again what it did not take, until ``closing`` is set."""
         waited = 0.0
         while not closing.wait(RECORD_SECONDS):
             try:

@@ -26,7 +26,7 @@ KEPT = 1024  # crops whose index is remembered: the photographs of pages, and th
 
 @dataclass(frozen=True)
 class Reading:
-    """What a structure index says of random phase models: in one word, and in a sentence."""
+    """Meaning of a structure index for random phase models, in a word and in a sentence."""
 
     verdict: Verdict
     words: str
@@ -52,7 +52,7 @@ class Index:
 
 
 def interpret(delta: float | None) -> Reading:
-    """What a structure index means, None being that of a crop that is too small.
+    """Interpret a structure index; None is that of a crop that is too small.
 
     Examples
     --------

@@ -68,11 +68,12 @@ class Output(PictureInfo):
 
     @property
     def listed(self) -> bool:
+        """Whether people see it among the outputs."""
         return not self.name.startswith(".")
 
     @property
     def video(self) -> bool:
-        """Whether it is a video, not a picture (though that may be animated)."""
+        """Whether its file is a video, not a picture (though that may be animated)."""
         return self.media_type.startswith("video/")
 
 
@@ -120,7 +121,7 @@ class Experiment:
     wanted: str = "texture"
 
     def output(self, name: str) -> Output | None:
-        """The output of this name, or None."""
+        """Find the output of this name, or None."""
         return next((output for output in self.outputs if output.name == name), None)
 
 

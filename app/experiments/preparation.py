@@ -34,7 +34,7 @@ class NewInput:
 
 @dataclass(frozen=True)
 class Answer:
-    """What is wanted of a run that is made for one answer: the name of an output, None for all, and its bits.
+    """Output that a run for a single answer shall make: its name, None for all of them, and its bits.
 
     Without a ``depth`` pictures have that of the deepest sample. What was typed and changes nothing of the answer is
     refused; of an experiment that is kept all is there, and its parameters may be those of another one.
@@ -46,7 +46,7 @@ class Answer:
 
 @dataclass(frozen=True)
 class NewExperiment:
-    """What a person asks for; ``parameters`` as they came, unchecked."""
+    """Request for an experiment; ``parameters`` as they came, unchecked."""
 
     method: str
     inputs: tuple[NewInput, ...]
@@ -63,7 +63,7 @@ def prepare(
     transparent: Callable[[Sample, Rectangle, Frames], bool],
     allowed: Allowed,
 ) -> Experiment:
-    """A complete experiment: crops explicit, defaults and sizes filled in.
+    """Complete a request: crops explicit, defaults and sizes filled in.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def prepare(
 
 
 def memory_of(experiment: Experiment, sample: Callable[[str], Sample]) -> int:
-    """Bytes that a run of a complete experiment needs, as far as its method says so; else 0."""
+    """Compute the bytes that a run of a complete experiment needs, as far as its method says so; else 0."""
     method = method_named(experiment.method)
     sizes = [
         Size(item.crop.width, item.crop.height, sample(item.sample).channels, item.frames.count)
@@ -200,7 +200,7 @@ def _params(method: Method, values: Mapping[str, Any]) -> StillParams:
 
 
 def explain(fault: ErrorDetails, method: Method) -> InvalidInputError:
-    """Say what is wrong with a parameter: its name, what it takes and what came."""
+    """Explain a fault of a parameter: its name, what it takes and what came."""
     path = [str(part) for part in fault["loc"]]
     field = ".".join(["parameters", *path])
     if fault["type"] == "extra_forbidden":

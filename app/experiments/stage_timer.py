@@ -6,7 +6,7 @@ from app.methods.context import Progress
 
 
 class StageTimer:
-    """Passes progress on and keeps the seconds of every stage."""
+    """Progress callback that passes every call on, and measures the seconds of each stage."""
 
     def __init__(self, progress: Progress) -> None:
         self._progress = progress
@@ -21,7 +21,7 @@ class StageTimer:
             self._stage = stage
 
     def seconds(self) -> dict[str, float]:
-        """Seconds by stage up to now."""
+        """Measure the seconds by stage up to now."""
         now = time.perf_counter()
         if self._stage is not None:
             self._seconds[self._stage] = self._seconds.get(self._stage, 0.0) + now - self._since

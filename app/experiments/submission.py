@@ -15,7 +15,7 @@ from app.settings import Settings
 
 @dataclass(frozen=True)
 class Plan:
-    """What an experiment would make and take: pixels and frames of the texture, and bytes of memory of a worker.
+    """Size and cost of an experiment: pixels and frames of the texture, and bytes of memory of a worker.
 
     ``memory`` is 0 for a method that needs little, whatever is asked for.
     """

@@ -10,7 +10,7 @@ IDENTIFIER_BYTES = 12
 
 
 def new_identifier() -> str:
-    """An identifier for addresses: 96 random bits; never starts with ``-``, which a shell would take for an option.
+    """Make an identifier for addresses: 96 random bits; it never starts with ``-``, as an option of a shell does.
 
     Examples
     --------
@@ -23,12 +23,12 @@ def new_identifier() -> str:
 
 
 def new_token() -> str:
-    """A token that makes its holder the owner of what is submitted with it: 192 random bits."""
+    """Make a token whose holder owns what is submitted with it: 192 random bits."""
     return secrets.token_urlsafe(TOKEN_BYTES)
 
 
 def token_digest(token: str) -> str:
-    """What is kept of a token: its SHA-256 in hex.
+    """Digest a token, whose SHA-256 in hex is all that is kept of it.
 
     Examples
     --------
@@ -39,7 +39,7 @@ def token_digest(token: str) -> str:
 
 
 def derive_identifier(*parts: str) -> str:
-    """An identifier as `new_identifier` gives it, always the same for the same parts, one of which must be a secret.
+    """Derive an identifier like those of `new_identifier` from parts, one of which must be a secret.
 
     Examples
     --------
@@ -53,7 +53,7 @@ def derive_identifier(*parts: str) -> str:
 
 
 def derive_token(secret: str) -> str:
-    """A token as `new_token` gives it, always the same for the same secret, which it does not tell."""
+    """Derive a token like those of `new_token` from a secret, which it does not tell."""
     return _derived(TOKEN_BYTES, "token", secret)
 
 
@@ -63,5 +63,5 @@ def _derived(count: int, *parts: str) -> str:
 
 
 def is_same_secret(one: str, other: str) -> bool:
-    """Compare two secrets in constant time."""
+    """Whether two secrets are the same; takes the same time wherever they differ."""
     return hmac.compare_digest(one.encode(errors="replace"), other.encode(errors="replace"))

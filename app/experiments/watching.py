@@ -23,7 +23,7 @@ class Watching:
     Parameters
     ----------
     store, executor
-        Who knows: the executor of the jobs it has, the store of all others.
+        Asked in this order: the executor knows of the jobs it has, the store of all others.
     """
 
     def __init__(self, store: ExperimentStore, executor: Executor) -> None:
@@ -33,7 +33,7 @@ class Watching:
         self._listeners: dict[str, set[Listener]] = {}
 
     def notify(self, job: str) -> None:
-        """Wake who waits for this job; from any thread."""
+        """Wake all that wait for this job; from any thread."""
         with self._lock:
             listeners = list(self._listeners.get(job, ()))
         for loop, event in listeners:

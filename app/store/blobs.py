@@ -59,12 +59,12 @@ class FileBlobs:
 
     @contextmanager
     def lease(self) -> Iterator[None]:
-        """While this is held, nothing is removed: put files and record them within it."""
+        """Prevent removals while this is held: put files and record them within it."""
         with self._locked(fcntl.LOCK_SH):
             yield
 
     def path(self, digest: str) -> Path:
-        """Where the file of this digest is.
+        """Find the file of this digest.
 
         Raises
         ------
@@ -88,7 +88,7 @@ class FileBlobs:
         return removed
 
     def digests(self) -> list[str]:
-        """Every digest that has a file."""
+        """List every digest that has a file."""
         return [path.name for path in self.directory.glob("[0-9a-f][0-9a-f]/*")]
 
     def remove_temporary(self, older_than: datetime) -> int:

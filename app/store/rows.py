@@ -47,7 +47,7 @@ def output_row(experiment_id: str, place: int, output: Output) -> dict[str, Any]
 
 
 def experiments_of(rows: Sequence[Row], input_rows: Sequence[Row], output_rows: Sequence[Row]) -> list[Experiment]:
-    """Experiments in the order of their rows; inputs and outputs are in order within each experiment."""
+    """Assemble experiments in the order of their rows; inputs and outputs come in order within each experiment."""
     inputs: dict[str, list[ExperimentInput]] = defaultdict(list)
     for row in input_rows:
         crop = Rectangle(row.x, row.y, row.width, row.height)
@@ -72,13 +72,13 @@ def experiments_of(rows: Sequence[Row], input_rows: Sequence[Row], output_rows: 
 
 
 def cursor_after(experiment: Experiment) -> str:
-    """The place in the archive right after this experiment, as text for an address."""
+    """Encode the place in the archive right after this experiment, as text for an address."""
     moment = (experiment.created_at - EPOCH) // timedelta(microseconds=1)
     return base64.urlsafe_b64encode(f"{moment}.{experiment.id}".encode()).decode().rstrip("=")
 
 
 def parse_cursor(cursor: str) -> tuple[datetime, str]:
-    """Moment and id of the last experiment that was seen.
+    """Decode moment and id of the last experiment that was seen.
 
     Raises
     ------

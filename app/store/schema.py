@@ -106,7 +106,7 @@ deleted = sa.Table("deleted", metadata, sa.Column("id", sa.Text, primary_key=Tru
 
 
 def connect(url: str) -> Engine:
-    """An engine of this database, whose schema exists; safe when several processes start at once."""
+    """Connect to a database and make its schema, if need be; safe when several processes start at once."""
     parsed = sa.make_url(url)
     if parsed.get_backend_name() == "sqlite":
         if parsed.database:
@@ -139,7 +139,7 @@ def _add_new_columns(connection: Connection) -> None:
 
 
 def writing(engine: Engine) -> AbstractContextManager[Connection]:
-    """A transaction that will write: on SQLite it takes the write lock at once, so that it cannot fail half-way."""
+    """Begin a transaction that will write: on SQLite with the write lock, so that it cannot fail half-way."""
     return engine.execution_options(writes=True).begin()
 
 

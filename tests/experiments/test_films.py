@@ -96,7 +96,7 @@ def test_a_format_names_one_of_the_two_files(service: Service, experiment: Exper
 @pytest.mark.parametrize(
     ("name", "file_format", "depth", "words"),
     [
-        ("texture", "png", None, "ask for webm or mp4"),
+        ("texture", "png", None, "Ask for webm or mp4"),
         ("texture", "webm", 16, "8 bits per channel"),
         ("preview", "jpeg", None, "only as it is stored"),
         ("cube", "mp4", None, "still picture"),

@@ -28,14 +28,14 @@ class FileCache:
         self._written = max_bytes  # as if full: the first file that is added looks at what is there
 
     def get(self, name: str, make: Callable[[], bytes]) -> Path:
-        """The file of this name; made if it is not there, perhaps by several threads at once."""
+        """Find the file of this name; make it if it is not there, perhaps in several threads at once."""
         path = self._directory / name
         if not _touch(path):
             self._add(path, lambda temporary: temporary.write_bytes(make()))
         return path
 
     def file(self, name: str, write: Callable[[Path], None]) -> Path:
-        """The same for what takes long: one thread writes it, others wait."""
+        """Find the file of this name, or have one thread write it while others wait: for what takes long."""
         path = self._directory / name
         if not _touch(path):
             with self._lock:
@@ -57,7 +57,7 @@ class FileCache:
         self._make_room(size)
 
     def forget(self, prefix: str) -> None:
-        """Remove what was made of one original: the files whose names start so."""
+        """Remove the files whose names start so: those that were made of one original."""
         for path in self._directory.glob(f"{prefix}*"):
             path.unlink(missing_ok=True)
 

@@ -15,12 +15,12 @@ from app.methods.effects import possible_output, refuse_deep
 from app.methods.registry import method as method_named
 
 AnyFormat = Format | VideoFormat
-MP4_SUFFIX = "-mp4"  # ends the name of a film's second file: see `app.methods.output.videos`
+MP4_SUFFIX = "-mp4"  # ends the name of a video's second file: see `app.methods.output.videos`
 DEEP_SECONDS = 120.0  # how long a download waits for its output at 16 bits
 
 
 class Named(Protocol):
-    """An output, made or announced."""
+    """What made and announced outputs have in common."""
 
     @property
     def name(self) -> str: ...
@@ -33,7 +33,7 @@ class Named(Protocol):
 
 
 def name_of_file(output: Named, file_format: AnyFormat | None) -> str:
-    """Name the output that is this one in this format: a film is two of them.
+    """Name the output that is this one in this format: a video is two of them.
 
     Raises
     ------
@@ -46,17 +46,17 @@ def name_of_file(output: Named, file_format: AnyFormat | None) -> str:
         if file_format in ("webm", "mp4"):
             return output.name.removesuffix(MP4_SUFFIX) + (MP4_SUFFIX if file_format == "mp4" else "")
         raise InvalidInputError(
-            "This is a moving picture: ask for webm or mp4, or take one of the still outputs, such as 'cube'.", "format"
+            "Ask for webm or mp4, or take one of the still outputs, such as 'cube': this output is a video.", "format"
         )
     if output.media_type != PNG and file_format is not None and output.media_type != f"image/{file_format}":
-        raise InvalidInputError("This picture comes only as it is stored: leave the format out.", "format")
+        raise InvalidInputError("Leave the format out: this picture comes only as it is stored.", "format")
     if file_format == "webm" or file_format == "mp4":
-        raise InvalidInputError("This is a still picture: ask for png, jpeg, webp or tiff.", "format")
+        raise InvalidInputError("Ask for png, jpeg, webp or tiff: this output is a still picture.", "format")
     return output.name
 
 
 class Outputs:
-    """Finds outputs and has made what is not stored.
+    """Finds outputs, and has those made that are not stored.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ class Outputs:
             output = await self._deep(experiment, output)
         if output.media_type != PNG:
             return self._blobs.path(output.digest), output.media_type
-        assert file_format != "webm"  # `name_of_file` lets these through for films only
+        assert file_format != "webm"  # `name_of_file` lets these through for videos only
         assert file_format != "mp4"
         return await asyncio.to_thread(self._renditions.convert, output, file_format or "png", depth)
 

@@ -74,7 +74,7 @@ class Renditions:
     def video(self, sample: Sample, file_format: VideoFormat) -> tuple[Path, str]:
         """Make a file that plays of a video, and its media type.
 
-        MP4 plays everywhere. WebM has the pixels exactly as they are stored, if the film is not too long for that (see
+        MP4 plays everywhere. WebM has the pixels exactly as they are stored, if the video is not too long for that (see
         `app.images.video.writers`). Pixels that are not opaque lie on mid-grey.
 
         Raises
@@ -146,7 +146,7 @@ class Renditions:
 
 
 def _part(sample: Sample, frame: int) -> str:
-    """Begin a file's name; one strip may be cut into frames of several heights."""
+    """Begin a file's name; one file may be cut into frames of several heights."""
     return f"{sample.digest}-{sample.height}-{frame}" if sample.moving else sample.digest
 
 
