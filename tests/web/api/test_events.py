@@ -5,11 +5,14 @@ import signal
 import socket
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import httpx
 import pytest
 
-from app.settings import ROOT
+from app.experiments.model import Snapshot, Status
+from app.main import create_app
+from app.settings import ROOT, Settings
 
 
 def events(response):
@@ -45,6 +48,43 @@ def test_a_stream_follows_an_experiment_to_its_end(site):
     assert fractions == sorted(fractions)
     assert (told[-1]["event"], told[-1]["id"], told[-1]["data"]["progress"]) == ("status", "end", 1.0)
     assert [event["id"] for event in told[:-1]] == [str(number + 1) for number in range(len(told) - 1)]
+
+
+def test_an_event_is_sent_for_every_change_and_says_all_of_it(serving, tmp_path):
+    """A change of the status alone is a second event; the end has an identifier of its own, by which clients stop."""
+    snapshots = [
+        Snapshot(Status.QUEUED, position=2),
+        Snapshot(Status.QUEUED, position=1),
+        Snapshot(Status.RUNNING, fraction=0.25, stage="spot", elapsed=1.23456),
+        Snapshot(Status.RUNNING, fraction=0.5, stage="texture", elapsed=2.0),
+        Snapshot(Status.SUCCEEDED, fraction=1.0, elapsed=3.0),
+    ]
+
+    async def watch(experiment_id):
+        for snapshot in snapshots:
+            yield snapshot
+
+    service = SimpleNamespace(
+        ready=True,
+        start=lambda: None,
+        close=lambda: None,
+        experiments=SimpleNamespace(get=lambda experiment_id: None),
+        watching=SimpleNamespace(watch=watch),
+    )
+    with serving(create_app(Settings(data_dir=tmp_path), service)) as url:
+        told = list(events(httpx.get(f"{url}/api/v1/experiments/x/events")))
+    assert [(event["id"], event["event"], tuple(event["data"].values())) for event in told] == [
+        ("1", "progress", ("queued", 2, 0.0, None, 0.0)),
+        ("2", "status", ("queued", 2, 0.0, None, 0.0)),
+        ("3", "progress", ("queued", 1, 0.0, None, 0.0)),
+        ("4", "progress", ("running", None, 0.25, "spot", 1.235)),
+        ("5", "status", ("running", None, 0.25, "spot", 1.235)),
+        ("6", "progress", ("running", None, 0.5, "texture", 2.0)),
+        ("7", "progress", ("succeeded", None, 1.0, None, 3.0)),
+        ("end", "status", ("succeeded", None, 1.0, None, 3.0)),
+    ]
+    assert list(told[0]["data"]) == ["status", "position", "progress", "stage", "elapsed"]
+    assert [event.get("retry") for event in told] == ["2000"] + [None] * 7
 
 
 def test_the_stream_of_a_finished_experiment_ends_at_once(site, experiment):

@@ -2,6 +2,7 @@
 
 import json
 import zipfile
+from datetime import datetime
 from io import BytesIO
 
 import pytest
@@ -145,3 +146,14 @@ def test_outputs_that_are_not_there_yet_are_not_found(site):
 def test_an_unknown_output_is_not_found(site, experiment, name):
     response = site.client.get(f"{experiment['url']}/outputs/{name}")
     assert (response.status_code, response.headers["Content-Type"]) == (404, "application/problem+json")
+
+
+def test_a_zip_is_the_same_file_whenever_it_is_asked_for(site, experiment):
+    """Its files are dated as the experiment was finished, not as they were packed."""
+    address = f"/api/v1/experiments/{experiment['id']}/outputs.zip"
+    packed = site.client.get(address).content
+    finished = datetime.fromisoformat(experiment["finished_at"]).timetuple()[:6]
+    with zipfile.ZipFile(BytesIO(packed)) as archive:
+        dates = {entry.date_time for entry in archive.infolist()}
+    assert dates == {(*finished[:5], finished[5] // 2 * 2)}  # ZIP counts every other second
+    assert site.client.get(address).content == packed

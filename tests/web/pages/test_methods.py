@@ -87,3 +87,19 @@ def test_an_unknown_method_is_answered_with_a_page(gallery: httpx.Client, path: 
 def test_the_navigation_marks_where_one_is(page: Page) -> None:
     for path, link in (("/methods/rpn", "/methods"), ("/figures", "/catalogue"), ("/catalogue", "/catalogue")):
         assert re.findall(r'<a href="([^"]+)" aria-current="page"', page(path)) == [link]
+
+
+@EVERY
+def test_the_table_of_parameters_says_what_each_may_be(page: Page, name: str) -> None:
+    """A switch is on or off, a choice one of its names, a number within its bounds."""
+    table = page(f"/methods/{name}").split('aria-label="Table of parameters"')[1].split("</table>")[0]
+    rows = [re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row, re.DOTALL) for row in table.split("<tr>")[2:]]
+    found = {re.sub("<[^>]+>", "", row[1]): (row[2].strip(), unescape(row[3])) for row in rows}
+    for entry in fields(METHODS[name].params):
+        default, span = found[entry.name]
+        if entry.kind == "switch":
+            assert (default, span) == ("on" if entry.default else "off", "on, off")
+        elif entry.kind == "choice":
+            assert span.split(", ") == list(entry.choices)
+        elif entry.minimum:
+            assert span == f"{entry.minimum} – {entry.maximum}"

@@ -2,6 +2,7 @@
 
 import ast
 import os
+import re
 import shlex
 import subprocess
 import sys
@@ -21,7 +22,7 @@ from app.methods.effects import without_effect
 from app.methods.fields import FormField, fields
 from app.methods.model import Method, Size
 from app.methods.registry import METHODS
-from app.web.pages.snippets import snippets
+from app.web.pages.snippets import WIDTH, snippets
 from tests.methods.runs import SMALL
 
 BASE = "https://texture.example.org"
@@ -159,3 +160,19 @@ def test_a_snippet_with_a_text_runs_in_every_language(site: Any, tmp_path: Path,
     parameters = {"weights": "0.25, 0.5 ,0.25", "strip": 0, "width": 50}
     record = site.finished(method="mix", inputs=inputs_at(*["gravel_gray"] * 3), parameters=parameters)
     run_snippet(site, record, language, tmp_path)
+
+
+@EVERY
+def test_a_command_is_broken_only_where_the_next_field_would_not_fit(method: Method) -> None:
+    """So that it is read without scrolling, and takes no more lines than it needs."""
+    broken = 0
+    for experiment in experiments(method):
+        text = snippets(experiment, BASE)[0][1]
+        lines = [line.removesuffix(" \\") for line in text[text.rindex("curl ") :].splitlines()]
+        fields_of = [re.split(r" (?=-F |--form-string |'?https?://)", line.strip()) for line in lines]
+        for line, words in zip(lines, fields_of, strict=True):
+            assert len(words) == 1 or len(line) <= WIDTH
+        for line, (first, *_) in zip(lines, fields_of[1:], strict=False):
+            assert len(line) + len(first) >= WIDTH
+        broken += len(lines) > 1
+    assert broken
