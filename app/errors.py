@@ -1,4 +1,5 @@
-"""What can go wrong, by meaning. `app.web.problems` says how it is answered, `app.cli.problems` how it is printed."""
+"""Errors by meaning. `app.web.problems` maps them to HTTP answers, `app.cli.problems` prints them."""
+
 
 
 class AppError(Exception):
@@ -16,7 +17,7 @@ class AppError(Exception):
 
 
 class InvalidInputError(AppError):
-    """A value that does not fit what is asked for.
+    """A value that is not valid.
 
     Parameters
     ----------

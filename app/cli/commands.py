@@ -1,4 +1,4 @@
-"""The commands and their options. What takes long to import is imported by the command that needs it."""
+"""Commands and their options. What takes long to import is imported by the command that needs it."""
 
 import errno
 import os
@@ -12,8 +12,8 @@ from app.errors import InvalidInputError
 from app.synthesis import __version__
 
 
-def _version(asked: bool) -> None:
-    if asked:
+def _print_version(on: bool) -> None:
+    if on:
         typer.echo(f"microtexture {__version__}")
         raise typer.Exit
 
@@ -72,7 +72,7 @@ def serve(
 def methods(
     name: Annotated[
         str | None,
-        typer.Argument(help="Tell of this one what it can give, and under which parameters.", metavar="METHOD"),
+        typer.Argument(help="Show the parameters and outputs of this method.", metavar="METHOD"),
     ] = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="The whole declaration, as GET /api/v1/methods gives it.")
@@ -209,7 +209,7 @@ def _nothing() -> None:
 
 def about(
     version: Annotated[
-        bool, typer.Option("--version", help="Say the version.", callback=_version, is_eager=True)
+        bool, typer.Option("--version", help="Print the version.", callback=_print_version, is_eager=True)
     ] = False,
 ) -> None:
     """From a photograph to as much of its texture as you ask for."""

@@ -1,4 +1,4 @@
-"""The files that a run leaves: where they may be written, and that they are whole or not there."""
+"""Files that a run writes: checks of where they may go, and writing each whole or not at all."""
 
 import json
 import os
@@ -39,7 +39,7 @@ Depth = Literal[8, 16]
 
 @dataclass(frozen=True)
 class Target:
-    """One file to write: its name says the format, and with it which of a film's two files is wanted."""
+    """One file to write: its name gives the format and, for a video, which of the two files."""
 
     path: Path
     output: str

@@ -1,4 +1,4 @@
-"""How what goes wrong is said over the shell: one line on stderr and an exit code, no traceback."""
+"""Error messages on the command line: one line on stderr and an exit code, no traceback."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -8,12 +8,12 @@ import typer
 from app.errors import AppError, BusyError
 
 FAILED, WRONG = 1, 2
-EXIT_CODES = "Exit codes: 0 done, 1 it could not be done, 2 what was asked for is wrong, 130 interrupted with Ctrl-C."
+EXIT_CODES = "Exit codes: 0 done, 1 it could not be done, 2 the request is wrong, 130 interrupted with Ctrl-C."
 
 
 @contextmanager
 def plain_errors() -> Iterator[None]:
-    """Say errors meant for people in a line on stderr and exit; any other one is a bug and stays a traceback."""
+    """Print errors meant for people as one line on stderr and exit; any other one is a bug and stays a traceback."""
     try:
         yield
     except AppError as error:

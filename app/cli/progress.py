@@ -1,4 +1,4 @@
-"""The progress bar of work that takes long, on a terminal only."""
+"""Progress bar of work that takes long, on a terminal only."""
 
 import time
 from types import TracebackType

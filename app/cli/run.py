@@ -1,4 +1,4 @@
-"""One run without a service: photographs or clips in, one file out, or all of them."""
+"""Run of `microtexture synthesize`: photographs or clips in, one file out, or all of them."""
 
 import re
 import tempfile

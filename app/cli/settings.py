@@ -1,4 +1,4 @@
-"""The settings as a command reads them."""
+"""Settings of a command, read from the environment."""
 
 from pydantic import ValidationError
 

@@ -1,4 +1,4 @@
-"""`microtexture synthesize`: the service's run without a service. A method's options come from its declaration."""
+"""Options of `microtexture synthesize`, made from the methods' declarations."""
 
 import inspect
 from collections.abc import Callable

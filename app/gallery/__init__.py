@@ -1,1 +1,1 @@
-"""What the program shows of itself: the catalogue, the figures of the literature, and the figures of every method."""
+"""Gallery: the catalogue, the figures of the literature and the figures of every method."""

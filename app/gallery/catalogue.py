@@ -1,4 +1,4 @@
-"""What random phase noise can do and what it cannot: crops and their RPN in pairs."""
+"""Catalogue: pairs of a crop and its RPN, successes and failures."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""Everything that is on show, in the order in which it is made."""
+"""Exhibits: everything on show, in the order in which it is made."""
 
 from collections.abc import Iterator
 

@@ -1,4 +1,4 @@
-"""The name of an exhibit's experiment: a function of what it computes, so that it is made once and found again."""
+"""Identifiers of the exhibits' experiments: hashes of what they compute, so that each is made once and found again."""
 
 import hashlib
 import json

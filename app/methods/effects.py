@@ -1,4 +1,4 @@
-"""What a run gives under its parameters, and which of those that were typed would change nothing of it."""
+"""Effects of parameters: the outputs of a run, and typed parameters that would change none of them."""
 
 from collections.abc import Collection, Sequence
 
@@ -13,7 +13,7 @@ FEW = 4  # names that a sentence lists in full
 
 
 def outputs_of(method: Method, params: StillParams, inputs: int) -> tuple[OutputSpec, ...]:
-    """The outputs of a run with these parameters, of so many inputs, in their order.
+    """List the outputs of a run with these parameters and this number of inputs, in their order.
 
     Examples
     --------
@@ -26,7 +26,7 @@ def outputs_of(method: Method, params: StillParams, inputs: int) -> tuple[Output
 
 
 def made_by(method: Method, parameter: str) -> list[str]:
-    """Names of the outputs that are there for the sake of this parameter: empty if it changes what is always given.
+    """Name the outputs that only this parameter makes; none if it changes outputs that every run makes.
 
     Examples
     --------
@@ -39,12 +39,12 @@ def made_by(method: Method, parameter: str) -> list[str]:
 
 
 def output_named(method: Method, name: str, params: StillParams, inputs: int) -> OutputSpec:
-    """The output of this name.
+    """Find the output of this name among those of a run.
 
     Raises
     ------
     InvalidInputError
-        At ``output``, with the names there are, or with what it takes to be given that one.
+        At ``output``, with the names there are, or with the condition under which this one is made.
     """
     found = possible_output(method, name)
     if found.applies(params, inputs):
@@ -57,7 +57,7 @@ def output_named(method: Method, name: str, params: StillParams, inputs: int) ->
 
 
 def possible_output(method: Method, name: str) -> OutputSpec:
-    """The output of this name, whether or not it is given under the parameters at hand.
+    """Find the output of this name among all that the method can make.
 
     Raises
     ------
@@ -72,7 +72,7 @@ def possible_output(method: Method, name: str) -> OutputSpec:
 
 
 def refuse_deep(output: OutputSpec, deepest: int) -> None:
-    """Refuse 16 bits per channel for what has 8, whatever is asked for.
+    """Refuse 16 bits per channel for an output that always has 8.
 
     Parameters
     ----------
@@ -93,12 +93,12 @@ def refuse_deep(output: OutputSpec, deepest: int) -> None:
 
 
 def without_effect(
-    method: Method, sizes: Sequence[Size], params: StillParams, given: Collection[str], wanted: Collection[str]
+    method: Method, sizes: Sequence[Size], params: StillParams, typed: Collection[str], requested: Collection[str]
 ) -> dict[str, str]:
-    """Those of the given parameters that change nothing of the wanted outputs, each with a sentence that says why.
+    """Find the typed parameters that change none of the requested outputs, each with a sentence that says why.
 
-    A default that is said aloud promises nothing, so it counts as left out, unless it makes outputs that are not
-    wanted; likewise a value that makes none of them. Width, height, frames and seed are never among these.
+    A parameter typed with its default value counts as left out, unless it makes outputs that were not requested;
+    likewise a value that makes none of them. Width, height, frames and seed are never among these.
 
     Parameters
     ----------
@@ -107,28 +107,28 @@ def without_effect(
         Of the inputs.
     params : StillParams
         All of them, with the defaults of those that were left out.
-    given : collection of str
+    typed : collection of str
         Names of the parameters that were typed.
-    wanted : collection of str
-        Names of the outputs that are asked for.
+    requested : collection of str
+        Names of the outputs.
     """
     idle = method.idle(sizes, method.fill(sizes, params))
     present = outputs_of(method, params, len(sizes))
     found: dict[str, str] = {}
     for name, field in method.params.model_fields.items():
-        if name not in given or name in COMMON:
+        if name not in typed or name in COMMON:
             continue
-        said, default = f"{name} (“{field.title}”)", getattr(params, name) == field.default
+        subject, default = f"{name} (“{field.title}”)", getattr(params, name) == field.default
         changed = [output for output in method.outputs if output.changed_by(name)]
         names = [output.name for output in changed if output in present]
         makes = bool(made_by(method, name))  # then a value that makes none asks for nothing
         if not default and name in idle:
-            found[name] = f"{said} would change nothing here: {idle[name]}"
-        elif (names if makes else not default) and not set(names) & set(wanted):
+            found[name] = f"{subject} would change nothing here: {idle[name]}"
+        elif (names if makes else not default) and not set(names) & set(requested):
             others = f"name one of those as the output, {EVERYTHING}, or " if names else ""
             found[name] = (
-                f"{said} changes {listed(names) or 'nothing'}, and only {listed(list(wanted))} is asked for: {others}"
-                "leave it out."
+                f"{subject} changes {listed(names) or 'nothing'}, and only {listed(list(requested))} is requested: "
+                f"{others}leave it out."
             )
     return found
 

@@ -1,4 +1,4 @@
-"""What a method's parameters look like from outside: forms, command-line options and pages are made of these fields."""
+"""Form fields of a method's parameters, of which forms, command-line options and pages are made."""
 
 import math
 from collections.abc import Mapping
@@ -13,7 +13,7 @@ Kind = Literal["integer", "number", "choice", "switch", "text"]
 
 @dataclass(frozen=True)
 class FormField:
-    """One parameter as a form asks for it; ``name`` is the parameter's, ``default`` is empty for "as the crop says"."""
+    """Form field of one parameter; ``default`` is empty for a size that follows the crop."""
 
     name: str
     label: str
@@ -47,7 +47,7 @@ def _bound(schema: Mapping[str, Any], *names: str) -> str:
 
 
 def _step(kind: Kind, default: Any) -> str:
-    """By how much an arrow key changes a number: the last digit of a default written with two."""
+    """Step of a number's arrow keys: the last digit of the default written with two."""
     if kind == "integer":
         return "1"
     if kind != "number":
@@ -57,7 +57,7 @@ def _step(kind: Kind, default: Any) -> str:
 
 @cache
 def fields(params: type[BaseModel]) -> tuple[FormField, ...]:
-    """Every parameter of a Params class as a form field, in the order of its declaration.
+    """Make a form field of every parameter of a Params class, in the order of its declaration.
 
     Examples
     --------
@@ -97,7 +97,7 @@ def reason(problem: str) -> str:
 
 
 def requirement(entry: FormField, problem: str = "") -> str:
-    """Say in one sentence what a field takes; of a text only its own validator knows, whose words are ``problem``.
+    """Describe a field's valid values in a sentence; for free text use the validator's message, ``problem``.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""What methods of several samples have in common: they need the same range of values and the same channels."""
+"""Inputs of several samples: brought to one range of values and one number of channels."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -12,7 +12,7 @@ from app.synthesis.arrays import Real
 
 
 def alike(sources: Sequence[Source]) -> list[Real]:
-    """Pixels of several inputs in the first one's range, all with as many channels as the one that has most.
+    """Bring the pixels of several inputs to the first one's range, and to as many channels as any of them has.
 
     A grey crop among colour ones becomes the colour image that looks the same: three equal channels.
 
@@ -50,6 +50,6 @@ def refuse_other_size(size: Size, resolved: Resolved[Any]) -> None:
     if (width, height) != (size.width, size.height):
         raise InvalidInputError(
             f"The smooth component can be added only to a texture of the crop's own size, {size.width} × {size.height} "
-            f"pixels, and {width} × {height} is asked for: take that size, or leave the smooth component out.",
+            f"pixels: choose that size instead of {width} × {height}, or leave the smooth component out.",
             "parameters.add_smooth",
         )

@@ -22,7 +22,7 @@ from app.synthesis.arrays import Bytes, Real
 
 @dataclass(frozen=True)
 class Slot:
-    """One input a method asks for; a ``moving`` one is a video."""
+    """Input that a method needs; a ``moving`` one is a video."""
 
     name: str
     title: str
@@ -32,7 +32,7 @@ class Slot:
 
 @dataclass(frozen=True)
 class Size:
-    """Size of an input, known before its pixels are read; a still one has one frame."""
+    """Size of an input, known before its pixels are read; a still picture has one frame."""
 
     width: int
     height: int
@@ -156,7 +156,7 @@ class Method:
     explanation : Explanation
         Its page.
     run : callable ``(sources, resolved, context) -> iterator of Picture``
-        Yields its pictures as they are made, the main one, ``texture``, first; what is not asked for is not computed.
+        Yields its pictures as they are made, the main one, ``texture``, first; the work stops where nobody takes more.
         Among them is ``crop``, and ``crop-2``, … for further inputs (see `app.methods.output.pictures.crops`).
         Its inputs are finite and its `Resolved` parameters have passed ``check``: see `pictures`, which calls it.
         It calls ``context.progress`` with its stages and the part of each that is done.
@@ -170,7 +170,7 @@ class Method:
     more : int
         How many further inputs like the last one it takes.
     size : callable ``(sizes) -> (width, height)``
-        Size of the texture where none is asked for; default: the first input's.
+        Size of the texture that is made by default; default: the first input's.
     toroidal : callable ``(params) -> bool``
         Whether the texture tiles without a seam.
     most_pixels : int, optional
@@ -179,7 +179,7 @@ class Method:
         Whether it is driven by the random phase that `rpn` and `adsn` share: at one seed and size all such methods
         have the same phase.
     memory : callable ``(sizes, resolved) -> int``, optional
-        Bytes that a run needs at its peak beside the interpreter, for one whose need grows with what is asked for.
+        Bytes that a run needs at its peak beside the interpreter, for one whose need grows with the texture.
     idle : callable ``(sizes, resolved) -> mapping``, optional
         Parameters that change nothing with these others, each with when they do and what to do, in words.
     """

@@ -1,4 +1,4 @@
-"""Parameters that several methods share, as a person types them and resolved."""
+"""Parameters of all methods and of all video methods, as typed and resolved."""
 
 from dataclasses import dataclass
 from typing import Generic, TypeVar
@@ -41,7 +41,7 @@ class StillParams(BaseModel):
 
 
 class MovingParams(StillParams):
-    """Parameters that every method of moving textures has besides."""
+    """Parameters of every video method: frames besides."""
 
     frames: int | None = Field(
         None, ge=2, le=FAR, title="Frames", description="Frames of the video; default: as the clip."
@@ -49,7 +49,7 @@ class MovingParams(StillParams):
 
 
 class LoopParams(MovingParams):
-    """Parameters of those whose videos can play in a loop or not."""
+    """Parameters of the video methods that can make a loop."""
 
     loop: bool = Field(
         True,
@@ -59,7 +59,7 @@ class LoopParams(MovingParams):
 
 
 class SeamlessParams(LoopParams):
-    """Parameters of those whose frames can tile or not besides."""
+    """Parameters of the video methods whose frames can tile, too."""
 
     tileable: bool = Field(
         True, title="Tileable", description="Opposite edges of every frame meet, so that it tiles without a seam."

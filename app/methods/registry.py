@@ -1,6 +1,6 @@
-"""The registry: every method of the service, by name."""
+"""Registry of the methods, by name."""
 
-from app.errors import NotFoundError
+from app.errors import InvalidInputError, NotFoundError
 from app.methods.gaussian.adsn import ADSN
 from app.methods.gaussian.dsn import DSN
 from app.methods.gaussian.mix import MIX
@@ -16,6 +16,7 @@ from app.methods.patchwork.video_patchwork import VIDEO_PATCHWORK
 from app.methods.patchwork.video_transfer import VIDEO_TRANSFER
 from app.methods.pyramid.heeger_bergen import HEEGER_BERGEN
 from app.methods.sampling.efros_leung import EFROS_LEUNG
+from app.numbers import quote
 
 METHODS: dict[str, Method] = {
     "rpn": RPN,
@@ -36,14 +37,23 @@ METHODS: dict[str, Method] = {
 
 
 def method(name: str) -> Method:
-    """The method of this name.
+    """Look up a method by its name.
 
     Raises
     ------
     NotFoundError
         With the names there are.
     """
-    try:
-        return METHODS[name]
-    except KeyError:
-        raise NotFoundError(f"There is no method {name!r}. The methods are: {', '.join(METHODS)}.") from None
+    if name not in METHODS:
+        raise NotFoundError(_no_method(name))
+    return METHODS[name]
+
+
+def refuse_unknown(name: str) -> None:
+    """Raise `InvalidInputError` at ``method``, with the names there are, unless there is a method of this name."""
+    if name not in METHODS:
+        raise InvalidInputError(_no_method(name), "method")
+
+
+def _no_method(name: str) -> str:
+    return f"There is no method {quote(name)}. The methods are: {', '.join(METHODS)}."

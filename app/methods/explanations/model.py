@@ -1,4 +1,4 @@
-"""How a method explains itself: prose, formulas, figures that it computes itself, and the articles it comes from.
+"""Explanations of methods: prose, formulas, figures that it computes itself, and the articles it comes from.
 
 Prose is plain text in which ``$…$`` holds LaTeX; the pages turn it into MathML.
 """

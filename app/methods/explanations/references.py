@@ -1,4 +1,4 @@
-"""Articles that several methods come from."""
+"""References: the articles that methods come from."""
 
 from app.methods.explanations.model import Reference
 

@@ -66,14 +66,14 @@ def check(sizes: Sequence[Size], resolved: Resolved[DsnParams]) -> None:
     params, width, height = resolved.params, resolved.width, resolved.height
     if params.spot != "sample" and 2 * params.radius + 1 > min(width, height):
         raise InvalidInputError(
-            f"A spot of radius {params.radius:g} does not fit into a texture of {width} × {height} pixels: take a "
+            f"A spot of radius {params.radius:g} does not fit into a texture of {width} × {height} pixels: choose a "
             f"smaller radius, or a texture of at least {ceil(2 * params.radius + 1)} pixels each way.",
             "parameters.radius",
         )
 
 
 def run(sources: Sequence[Source], resolved: Resolved[DsnParams], context: Context) -> Iterator[Picture]:
-    """The texture, the gallery of its convergence if it is asked for, and what was thrown where."""
+    """Make the texture, the gallery of its convergence if that is on, and pictures of the spot and its points."""
     source = sources[0]
     params, height, width = resolved.params, resolved.height, resolved.width
     context.progress("spot", 0)

@@ -64,16 +64,16 @@ class MixParams(SpotParams):
 def check(sizes: Sequence[Size], resolved: Resolved[MixParams]) -> None:
     """Refuse weights that are not one for each sample, and a path of a single step."""
     params = resolved.params
-    given = len(params.shares(len(sizes)))
-    if given != len(sizes):
+    found = len(params.shares(len(sizes)))
+    if found != len(sizes):
         raise InvalidInputError(
-            f"There are {len(sizes)} samples and {given} weight{'s' * (given > 1)}: give one weight for each sample, "
-            "or none to take as much of each.",
+            f"Give one weight for each of the {len(sizes)} samples, or none to take as much of each; there "
+            f"{'are' if found > 1 else 'is'} {found} weight{'s' * (found > 1)}.",
             "parameters.weights",
         )
     if params.strip == 1:
         raise InvalidInputError(
-            "A path has two ends: take 2 steps or more, or 0 to make no path.",
+            "Choose 2 steps or more, or 0 to make no path: a path has two ends.",
             "parameters.strip",
         )
 

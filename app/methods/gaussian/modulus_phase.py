@@ -56,8 +56,8 @@ def check(sizes: Sequence[Size], resolved: Resolved[ModulusPhaseParams]) -> None
     for name, asked, most in (("width", resolved.width, widest), ("height", resolved.height, highest)):
         if asked > most:
             raise InvalidInputError(
-                f"Modulus and phase are swapped pixel for pixel, so the {name} can be at most that of the smaller "
-                f"crop, {most} pixels, and {asked} is asked for: take larger crops, or a smaller {name}.",
+                f"Choose a {name} of at most {most} pixels instead of {asked}, or larger crops: modulus and phase are "
+                f"swapped pixel for pixel, and the smaller crop has a {name} of {most}.",
                 f"parameters.{name}",
             )
 

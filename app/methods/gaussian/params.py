@@ -17,9 +17,8 @@ class SpotParams(StillParams):
         ge=0,
         le=0.5,
         title="Transition α",
-        description="Width of the band along the border of the crop, as a part of its side, in which it fades out "
-        "before it is pasted into a larger image; only for textures larger than the crop. 0 cuts sharply and may "
-        "leave streaks.",
+        description="Fraction of the crop's side over which its border fades out before it is pasted into a larger "
+        "image; only for textures larger than the crop. 0 cuts sharply and may leave streaks.",
         json_schema_extra=ADVANCED,
     )
     window: Literal["bump", "gaussian"] = Field(
@@ -31,8 +30,8 @@ class SpotParams(StillParams):
     )
 
 
-NOT_EXTENDED = "the crop fades out only in a texture that is larger than it; ask for a larger one, or leave it out"
-NO_BAND = "with α = 0 there is no band in which the crop fades out; take another α, or leave it out"
+NOT_EXTENDED = "the crop fades out only in a texture that is larger than it; choose a larger one, or leave it out"
+NO_BAND = "with α = 0 there is no band in which the crop fades out; choose another α, or leave it out"
 
 
 def not_extended(sizes: Sequence[Size], resolved: Resolved[SpotParams]) -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""What RPN and ADSN have in common as methods: parameters, checks, and the pictures they give back."""
+"""Random phase methods, RPN and ADSN: their common parameters, checks and pictures."""
 
 from collections.abc import Callable, Iterator, Sequence
 from typing import Literal
@@ -39,8 +39,8 @@ class RandomPhaseParams(SpotParams):
     range: Literal["clip", "stretch"] = Field(
         "clip",
         title="Values out of range",
-        description="What becomes of values darker than black or brighter than white: 'clip' cuts them off; 'stretch' "
-        "maps all values, the same way in every colour, so that the extreme ones just fit.",
+        description="How values darker than black or brighter than white are brought back: 'clip' cuts them off; "
+        "'stretch' maps all values, the same way in every colour, so that the extreme ones just fit.",
         json_schema_extra=ADVANCED,
     )
     periodic: bool = Field(
@@ -59,8 +59,8 @@ def check(sizes: Sequence[Size], resolved: Resolved[RandomPhaseParams]) -> None:
         return
     if not resolved.params.periodic:
         raise InvalidInputError(
-            "The smooth component is part of the crop as long as the periodic component is not taken: turn “Periodic "
-            "component” on to add it, or leave it out.",
+            "The smooth component can be added only after it was taken out: turn “Periodic component” on, or leave the "
+            "smooth component out.",
             "parameters.add_smooth",
         )
     refuse_other_size(sizes[0], resolved)

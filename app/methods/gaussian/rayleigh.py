@@ -1,4 +1,4 @@
-"""`rayleigh`: the modulus made noisy, the phase kept."""
+"""`rayleigh`: Rayleigh noise on the modulus, with the phase kept."""
 
 from collections.abc import Iterator, Sequence
 
@@ -29,8 +29,8 @@ def check(sizes: Sequence[Size], resolved: Resolved[StillParams]) -> None:
     for name, asked, most in (("width", resolved.width, size.width), ("height", resolved.height, size.height)):
         if asked > most:
             raise InvalidInputError(
-                f"The phase of the crop is kept, so the {name} can be at most the crop's own, {most} pixels, and "
-                f"{asked} is asked for: take a larger crop, or a smaller {name}.",
+                f"Choose a {name} of at most {most} pixels, the crop's own, instead of {asked}, or a larger crop: the "
+                "phase of the crop is kept, and there is none beyond it.",
                 f"parameters.{name}",
             )
 

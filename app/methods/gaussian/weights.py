@@ -1,4 +1,4 @@
-"""Weights of several samples, as a person writes them."""
+"""Weights of several samples: parsing of what a person types."""
 
 import math
 import re

@@ -1,4 +1,4 @@
-"""From a method's arrays to its pictures."""
+"""Pictures of a method's arrays: rounding, PNG files, spectra and coordinate colours."""
 
 from collections.abc import Iterator, Sequence
 from typing import Literal

@@ -1,4 +1,4 @@
-"""From a method's frames to its films."""
+"""Video files of a method's frames: WebM, MP4, preview and video cube."""
 
 from collections.abc import Iterable, Iterator
 from functools import partial
@@ -48,7 +48,7 @@ def encode_texture(
     ----------
     frames : iterable of ndarray, shape (H, W, C)
         float32 or uint8, 0 to 255; they are rounded, and what is outside cut off. Nothing of a frame is kept when the
-        next is asked for. It calls progress itself.
+        next is taken. It calls progress itself.
     width, height, channels, count : int
         Of ``frames``.
     rate : float

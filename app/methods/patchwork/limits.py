@@ -155,8 +155,8 @@ def refuse_other_size(pattern: Size, resolved: Resolved[Any]) -> None:
     for name, asked, own in (("width", resolved.width, pattern.width), ("height", resolved.height, pattern.height)):
         if asked != own:
             raise InvalidInputError(
-                f"A transfer is as large as its pattern, {pattern.width} × {pattern.height} pixels, and a {name} of "
-                f"{asked} is asked for: leave width and height empty, or crop a larger or smaller pattern.",
+                f"The result always has the pattern's size ({pattern.width} × {pattern.height}); remove the {name} "
+                f"{asked}, or crop another pattern.",
                 f"parameters.{name}",
             )
 

@@ -1,4 +1,4 @@
-"""What the methods that put patches of a clip together share: refusals, memory, and pictures."""
+"""Pictures and memory of the methods that join patches of a clip."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace

@@ -94,10 +94,10 @@ def run(sources: Sequence[Source], resolved: Resolved[VideoTransferParams], cont
     context.progress("cells", 0)
     cells = jittered_cells(*shape[1:], grid=params.grid, sharpness=params.sharpness, tileable=False, seed=params.seed)
     average = film.mean(0, np.float32)
-    wanted = _with_channels(pattern.pixels * np.float32(PEAK / pattern.peak), average.shape[2])
+    target = _with_channels(pattern.pixels * np.float32(PEAK / pattern.peak), average.shape[2])
     if params.rescale:
-        wanted = rescale(wanted, average)
-    places = _matched(average, wanted, cells, params, context)
+        target = rescale(target, average)
+    places = _matched(average, target, cells, params, context)
     transitions = Transitions(
         cells.count, len(film), shape[0], params.interval, loop=params.loop, rng=random_numbers(params.seed, IN_TIME)
     )
@@ -111,17 +111,17 @@ def run(sources: Sequence[Source], resolved: Resolved[VideoTransferParams], cont
         context,
     )
     yield average_picture(average, context)
-    yield compared_pattern(wanted, params.rescale, PEAK, context)
+    yield compared_pattern(target, params.rescale, PEAK, context)
     yield from encode_crop(clip, context)
     yield encode("crop-2", "Pattern", pattern.pixels, pattern.peak, context)
 
 
-def _matched(average: Real, wanted: Real, cells: Cells, params: VideoTransferParams, context: Context) -> Ints:
+def _matched(average: Real, target: Real, cells: Cells, params: VideoTransferParams, context: Context) -> Ints:
     """The place of the clip for every cell, found in the average image."""
     with Team(context.threads) as team:
         matches = match_cells(
             average,
-            wanted,
+            target,
             cells,
             peak=PEAK,
             candidates=params.candidates,

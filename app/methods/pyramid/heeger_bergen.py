@@ -37,7 +37,7 @@ class HeegerBergenParams(StillParams):
         ge=1,
         le=8,
         title="Scales",
-        description="How many sizes of detail are told apart, each twice as coarse as the one before. More keep "
+        description="How many sizes of detail are distinguished, each twice as coarse as the one before. More keep "
         "larger features; S scales need a crop and a texture of at least 2^S pixels a side.",
     )
     orientations: int = Field(
@@ -45,7 +45,7 @@ class HeegerBergenParams(StillParams):
         ge=1,
         le=8,
         title="Orientations",
-        description="How many directions are told apart at each scale. More make the texture follow the sample's "
+        description="How many directions are distinguished at each scale. More make the texture follow the sample's "
         "directions more closely; 1 makes it forget them.",
     )
     iterations: int = Field(
@@ -59,7 +59,7 @@ class HeegerBergenParams(StillParams):
     edges: Literal["periodic", "mirror"] = Field(
         "periodic",
         title="Edges",
-        description="What becomes of the crop's borders, which do not match: 'periodic' takes the crop's periodic "
+        description="How the crop's borders, which do not match, are treated: 'periodic' takes the crop's periodic "
         "component; 'mirror' surrounds the crop by its mirror images, and keeps slow changes of light and colour.",
         json_schema_extra=ADVANCED,
     )
@@ -82,7 +82,7 @@ def check(sizes: Sequence[Size], resolved: Resolved[HeegerBergenParams]) -> None
     _refuse_too_large(size, width * height, params)
     if params.add_smooth and params.edges != "periodic":
         raise InvalidInputError(
-            "Only periodic edges take the smooth component out of the crop: take those, or do not add it.",
+            "Choose periodic edges, or do not add the smooth component: no other edges take it out of the crop.",
             "parameters.add_smooth",
         )
     if params.add_smooth:

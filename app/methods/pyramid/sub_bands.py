@@ -1,4 +1,4 @@
-"""The sub-bands of a steerable pyramid as one picture."""
+"""Mosaic of the sub-bands of a steerable pyramid."""
 
 import numpy as np
 

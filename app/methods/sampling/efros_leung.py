@@ -20,7 +20,7 @@ from app.synthesis.sampling.efros_leung import border_share, efros_leung, verbat
 
 HALF_PATCH = 4
 MOST_WORK = 10**12  # products: a minute or two on two processors
-USUAL_WORK = 3 * 10**11  # of a texture whose size was not asked for
+USUAL_WORK = 3 * 10**11  # of a texture of the default size
 MOST_TABLE = 1 << 25  # numbers of four bytes that the search holds
 
 

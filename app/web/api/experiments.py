@@ -14,7 +14,7 @@ from app.experiments.model import Experiment
 from app.experiments.preparation import NewExperiment, explain
 from app.experiments.service import Service
 from app.experiments.tokens import new_token
-from app.methods.registry import METHODS
+from app.methods.registry import METHODS, refuse_unknown
 from app.web.api.bodies import IDENTIFIER, Body, InputBody, ListedBody, without_fraction
 from app.web.api.openapi import EXAMPLE_METHOD, EXAMPLE_SAMPLE, OWNER, parameters_schema, problems
 from app.web.api.records import API, ExperimentList, ExperimentRecord, PlanRecord
@@ -71,10 +71,7 @@ class ExperimentBody(Body):
         InvalidInputError
             If there is no such method, or a parameter has another JSON type than declared.
         """
-        if self.method not in METHODS:
-            raise InvalidInputError(
-                f"There is no method of this name. The methods are: {', '.join(METHODS)}.", "method"
-            )
+        refuse_unknown(self.method)
         self._check_types()
         inputs = tuple(source.to_input() for source in self.inputs)
         return NewExperiment(self.method, inputs, self.parameters, self.listed)
@@ -195,8 +192,8 @@ def list_experiments(
     ] = None,
 ) -> ExperimentList:
     """Public experiments that succeeded, newest first."""
-    if method is not None and method not in METHODS:
-        raise InvalidInputError(f"There is no method of this name. The methods are: {', '.join(METHODS)}.", "method")
+    if method is not None:
+        refuse_unknown(method)
     page = service.experiments.page(limit=limit, cursor=cursor, method=method)
     following = None
     if page.cursor is not None:

@@ -28,7 +28,7 @@ def pixels(picture):
 
 @pytest.mark.parametrize("wrong", [{"order": 0}, {"order": 10**9 + 1}, {"order": 2.5}, {"spot": "star"}, {"radius": 0}])
 def test_values_outside_what_is_declared_are_refused(wrong):
-    with pytest.raises(ValidationError):
+    with pytest.raises(ValidationError, match="1 validation error for DsnParams"):
         DSN.params(**wrong)
 
 

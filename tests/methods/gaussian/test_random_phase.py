@@ -62,7 +62,7 @@ def test_every_parameter_has_a_title_a_description_and_a_default(name):
     ],
 )  # fmt: skip
 def test_values_outside_what_is_declared_are_refused(wrong):
-    with pytest.raises(ValidationError):
+    with pytest.raises(ValidationError, match=rf"1 validation error for RandomPhaseParams\n{next(iter(wrong))}\n"):
         RandomPhaseParams(**wrong)
 
 

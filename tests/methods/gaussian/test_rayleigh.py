@@ -50,9 +50,15 @@ def test_a_constant_crop_has_nothing_that_the_noise_could_damage():
     assert texture.facts[0].value == 1
 
 
-@pytest.mark.parametrize(("asked", "field"), [({"width": 71}, "width"), ({"height": 61, "width": 20}, "height")])
-def test_a_size_beyond_the_crops_is_refused_with_words_that_help(asked, field):
-    with pytest.raises(InvalidInputError, match="larger crop") as refusal:
+@pytest.mark.parametrize(
+    ("asked", "field", "words"),
+    [
+        ({"width": 71}, "width", "^Choose a width of at most 70 pixels, the crop's own, instead of 71"),
+        ({"height": 61, "width": 20}, "height", "^Choose a height of at most 60 pixels, the crop's own, instead of 61"),
+    ],
+)
+def test_a_size_beyond_the_crops_is_refused_with_words_that_help(asked, field, words):
+    with pytest.raises(InvalidInputError, match=words) as refusal:
         RAYLEIGH.resolve([Size(70, 60, 3)], RAYLEIGH.params(**asked))
     assert refusal.value.field == f"parameters.{field}"
 

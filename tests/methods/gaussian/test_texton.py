@@ -28,7 +28,7 @@ def pixels(picture):
 
 @pytest.mark.parametrize("wrong", [{"cut": 0}, {"cut": -3}, {"alpha": 0.1}])
 def test_values_outside_what_is_declared_are_refused(wrong):
-    with pytest.raises(ValidationError):
+    with pytest.raises(ValidationError, match=rf"1 validation error for TextonParams\n{next(iter(wrong))}\n"):
         TEXTON.params(**wrong)
 
 

@@ -47,7 +47,7 @@ def test_a_crop_too_small_for_the_grid_is_refused_with_the_largest_grid_that_fit
     assert refusal.value.field == "parameters.grid"
     largest = int(refusal.value.message.split("at most ")[1].split(",")[0])
     PATCHWORK.resolve(size, PATCHWORK.params(grid=largest, **asked))
-    with pytest.raises(InvalidInputError):
+    with pytest.raises(InvalidInputError, match=f"^Patches of grid {largest + 1} need"):
         PATCHWORK.resolve(size, PATCHWORK.params(grid=largest + 1, **asked))
 
 

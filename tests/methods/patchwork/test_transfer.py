@@ -76,8 +76,8 @@ def test_its_size_is_the_patterns():
 @pytest.mark.parametrize(
     ("sizes", "parameters", "field", "words"),
     [
-        ([Size(200, 300, 3), Size(90, 80, 1)], {"width": 91}, "width", "as large as its pattern, 90 × 80"),
-        ([Size(200, 300, 3), Size(90, 80, 1)], {"height": 300}, "height", "as large as its pattern"),
+        ([Size(200, 300, 3), Size(90, 80, 1)], {"width": 91}, "width", r"size \(90 × 80\); remove the width 91"),
+        ([Size(200, 300, 3), Size(90, 80, 1)], {"height": 300}, "height", "remove the height 300"),
         ([Size(60, 300, 3), Size(90, 80, 1)], {}, "grid", "at most 1[0-9]"),
         ([Size(9, 9, 3), Size(90, 80, 1)], {}, "grid", "larger crop"),
         ([Size(2000, 2000, 3), Size(2000, 2000, 3)], {"candidates": 0}, "candidates", r"at most [0-9,]+ candidates"),
@@ -92,11 +92,11 @@ def test_what_cannot_run_is_refused_with_words_that_help(sizes, parameters, fiel
 
 def test_the_grid_that_is_named_fits():
     sizes = [Size(60, 300, 3), Size(90, 80, 1)]
-    with pytest.raises(InvalidInputError) as refusal:
+    with pytest.raises(InvalidInputError, match="take a grid of at most") as refusal:
         TRANSFER.resolve(sizes, TransferParams())
     largest = int(refusal.value.message.split("at most ")[1].split(",")[0])
     TRANSFER.resolve(sizes, TransferParams(grid=largest))
-    with pytest.raises(InvalidInputError):
+    with pytest.raises(InvalidInputError, match=f"^Patches of grid {largest + 1} need"):
         TRANSFER.resolve(sizes, TransferParams(grid=largest + 1))
 
 

@@ -55,7 +55,7 @@ def test_a_crop_that_is_too_small_is_refused_with_the_largest_grid_that_fits(arr
     assert refusal.value.field == "parameters.grid"
     largest = int(refusal.value.message.split("at most ")[1].split(",")[0])
     VIDEO_PATCHWORK.resolve(sizes, VIDEO_PATCHWORK.params(grid=largest, **asked))
-    with pytest.raises(InvalidInputError):
+    with pytest.raises(InvalidInputError, match=f"^Patches of grid {largest + 1} need"):
         VIDEO_PATCHWORK.resolve(sizes, VIDEO_PATCHWORK.params(grid=largest + 1, **asked))
 
 
@@ -68,7 +68,7 @@ def test_a_clip_that_is_too_short_is_refused_with_the_longest_interval_that_fits
     assert refusal.value.field == "parameters.interval"
     longest = int(refusal.value.message.split("at most ")[1].split(",")[0])
     VIDEO_PATCHWORK.resolve(sizes, VIDEO_PATCHWORK.params(interval=longest, **asked))
-    with pytest.raises(InvalidInputError):
+    with pytest.raises(InvalidInputError, match=f"an interval of at most {longest}, or"):
         VIDEO_PATCHWORK.resolve(sizes, VIDEO_PATCHWORK.params(interval=longest + 1, **asked))
 
 

@@ -89,7 +89,7 @@ def test_a_clip_in_grey_makes_grey_and_one_in_colour_takes_a_grey_pattern(clip, 
 
 
 def test_another_size_than_the_patterns_is_refused():
-    with pytest.raises(InvalidInputError, match="as large as its pattern") as refusal:
+    with pytest.raises(InvalidInputError, match=r"pattern's size \(100 × 80\); remove the height 90") as refusal:
         VIDEO_TRANSFER.resolve([Size(320, 320, 3, 72), Size(100, 80, 3)], VIDEO_TRANSFER.params(width=100, height=90))
     assert refusal.value.field == "parameters.height"
 

@@ -44,7 +44,7 @@ def test_the_defaults_are_those_of_the_literature():
      {"edges": "zero"}, {"seed": -1}, {"alpha": 0.1}],
 )  # fmt: skip
 def test_values_outside_what_is_declared_are_refused(wrong):
-    with pytest.raises(ValidationError):
+    with pytest.raises(ValidationError, match="1 validation error for HeegerBergenParams"):
         HeegerBergenParams(**wrong)
 
 

@@ -42,7 +42,7 @@ def test_the_defaults_are_those_of_the_articles():
 
 @pytest.mark.parametrize("wrong", [{"half_patch": 0}, {"half_patch": 12}, {"tolerance": -0.1}, {"tolerance": 1.1}])
 def test_values_outside_what_is_declared_are_refused(wrong):
-    with pytest.raises(ValidationError):
+    with pytest.raises(ValidationError, match="1 validation error for EfrosLeungParams"):
         EfrosLeungParams(**wrong)
 
 
