@@ -1,7 +1,6 @@
 """Errors by meaning. `app.web.problems` maps them to HTTP answers, `app.cli.problems` prints them."""
 
 
-
 class AppError(Exception):
     """Base of every error whose message is meant for the person who caused it.
 
