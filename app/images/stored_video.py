@@ -96,7 +96,24 @@ def read_frame(path: Path, frame: int, width: int, height: int) -> Pixels:
 
 
 def frames_have_transparency(path: Path, crop: Rectangle, frames: Frames, height: int) -> bool:
-    """Whether a crop holds a pixel that is not opaque in any of the frames; arguments as of `read_frames`."""
+    """Whether a crop holds a pixel that is not opaque in any of the frames.
+
+    Parameters
+    ----------
+    path : Path
+        The frame stack, written by `app.images.png_writer`.
+    crop : Rectangle
+        Inside a frame.
+    frames : Frames
+        Inside the video.
+    height : int
+        Of a frame.
+
+    Raises
+    ------
+    InvalidInputError
+        If the crop reaches outside the stack.
+    """
     return any(
         has_transparency(path, locate_crop(crop, frame, height))
         for frame in range(frames.first, frames.first + frames.count)

@@ -11,7 +11,7 @@ from PIL import Image
 
 from app.images.video.writers import Kind, write_video
 from tests.images.clips import psnr
-from tests.images.video.natural import natural_film
+from tests.images.video.natural import natural_video
 
 # Waits for the first frame on the screen, keeps what a canvas sees of it, and plays to the end.
 PLAY = """async ([data, type]) => {
@@ -62,7 +62,7 @@ def played(browser: Any, video: np.ndarray, kind: Kind, path: Path, rate: float)
 def test_a_video_is_drawn_as_it_was_and_plays_to_its_end(
     browser: Any, tmp_path: Path, kind: Kind, height: int, width: int, channels: int, rate: float
 ) -> None:
-    video = natural_film(12, height, width, channels)
+    video = natural_video(12, height, width, channels)
     found = played(browser, video, kind, tmp_path / "video", rate)
     frame = np.broadcast_to(video[0], (height, width, 3))
     if kind == "webm":

@@ -15,14 +15,14 @@ from av.video.reformatter import Interpolation, VideoReformatter
 from numpy.typing import NDArray
 from PIL import Image
 
-Film = NDArray[np.uint8]
+VideoArray = NDArray[np.uint8]
 ACCURATE = Interpolation.BILINEAR | Interpolation.ACCURATE_RND | Interpolation.FULL_CHR_H_INT
 BT601, BT709, LIMITED, FULL = 5, 1, 1, 2
 
 os.environ["SVT_LOG"] = "1"  # the AV1 encoder would describe itself at length
 
 
-def moving(count: int = 6, height: int = 48, width: int = 64, *, seed: int = 0) -> Film:
+def moving(count: int = 6, height: int = 48, width: int = 64, *, seed: int = 0) -> VideoArray:
     """A smooth pattern that moves, (T, H, W, 3): no two frames alike, no side like another."""
     t, y, x = np.mgrid[0:count, 0:height, 0:width]
     phase = np.random.default_rng(seed).uniform(0, 6, 3)
@@ -43,7 +43,7 @@ def same_priority() -> Iterator[None]:
 
 @same_priority()
 def video(
-    film: Film,
+    film: VideoArray,
     codec: Any = "libx264",
     pixels: str = "yuv420p",
     *,
@@ -57,7 +57,7 @@ def video(
     options: dict[str, str] | None = None,
     container: dict[str, str] | None = None,
 ) -> bytes:
-    """A film as a file; ``ticks`` are when its frames are shown, and ``stream`` changes the stream before it is coded.
+    """A video as a file; ``ticks`` are when its frames are shown, and ``stream`` changes the stream before it is coded.
 
     ``film`` is (T, H, W, C), C 1, 3 or 4. ``tagged`` says whether the file names the matrix and the range.
     """
@@ -89,13 +89,13 @@ def video(
     return written.getvalue()
 
 
-def lossless(film: Film, **options: Any) -> bytes:
-    """A film as WebM whose numbers are kept."""
+def lossless(film: VideoArray, **options: Any) -> bytes:
+    """A video as WebM whose numbers are kept."""
     return video(film, "libvpx-vp9", "gbrp", form="webm", matrix=0, colours=FULL, options={"lossless": "1"}, **options)
 
 
-def animation(film: Film, form: str, duration: int | Sequence[int] = 40, **options: Any) -> bytes:
-    """A film as GIF, PNG or WebP; GIF reduces it to 256 colours a frame."""
+def animation(film: VideoArray, form: str, duration: int | Sequence[int] = 40, **options: Any) -> bytes:
+    """A video as GIF, PNG or WebP; GIF reduces it to 256 colours a frame."""
     images = [Image.fromarray(frame.squeeze() if frame.shape[2] == 1 else frame) for frame in film]
     if form == "GIF":
         images = [image.quantize(256) if image.mode == "RGB" else image for image in images]

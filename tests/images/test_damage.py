@@ -26,18 +26,18 @@ from tests.profiles import examples
 pytestmark = pytest.mark.slow
 
 Read = Callable[..., Decoded]
-FILM = moving(8)
+CLIP = moving(8)
 WRITERS: dict[str, Callable[[], bytes]] = {
-    "mp4": lambda: video(FILM),
-    "mov": lambda: video(FILM, form="mov", options={"bf": "0", "g": "3"}),
-    "fragments": lambda: video(FILM, options={"g": "2"}, container={"movflags": "frag_keyframe+empty_moov"}),
-    "vp8": lambda: video(FILM, "libvpx", form="webm"),
-    "vp9": lambda: lossless(FILM),
-    "av1": lambda: video(FILM, "libsvtav1", form="webm", options={"preset": "12"}),
-    "mkv": lambda: video(FILM, form="matroska"),
-    "gif": lambda: animation(FILM, "GIF"),
-    "png": lambda: animation(FILM, "PNG"),
-    "webp": lambda: animation(FILM, "WEBP"),
+    "mp4": lambda: video(CLIP),
+    "mov": lambda: video(CLIP, form="mov", options={"bf": "0", "g": "3"}),
+    "fragments": lambda: video(CLIP, options={"g": "2"}, container={"movflags": "frag_keyframe+empty_moov"}),
+    "vp8": lambda: video(CLIP, "libvpx", form="webm"),
+    "vp9": lambda: lossless(CLIP),
+    "av1": lambda: video(CLIP, "libsvtav1", form="webm", options={"preset": "12"}),
+    "mkv": lambda: video(CLIP, form="matroska"),
+    "gif": lambda: animation(CLIP, "GIF"),
+    "png": lambda: animation(CLIP, "PNG"),
+    "webp": lambda: animation(CLIP, "WEBP"),
 }
 
 

@@ -9,34 +9,34 @@ import pytest
 from app.errors import BrokenFileError, TooLargeError
 from app.images.decode import Decoded
 from app.images.formats.clip import ClipLimits, check_clip
-from tests.images.clips import Film, animation, chunk, lossless, moving, video
+from tests.images.clips import VideoArray, animation, chunk, lossless, moving, video
 
 Read = Callable[..., Decoded]
 FRAMES, HEIGHT, WIDTH = 12, 32, 48
 
 
-def mp4(film: Film) -> bytes:
+def mp4(film: VideoArray) -> bytes:
     return video(film)
 
 
-def live(film: Film) -> bytes:
+def live(film: VideoArray) -> bytes:
     """WebM as a browser records it: neither its length nor the time it plays is said."""
     return video(film, "libvpx", form="webm", container={"live": "1"})
 
 
-def gif(film: Film) -> bytes:
+def gif(film: VideoArray) -> bytes:
     return animation(film, "GIF")
 
 
-def apng(film: Film) -> bytes:
+def apng(film: VideoArray) -> bytes:
     return animation(film, "PNG")
 
 
-def webp(film: Film) -> bytes:
+def webp(film: VideoArray) -> bytes:
     return animation(film, "WEBP")
 
 
-Write = Callable[[Film], bytes]
+Write = Callable[[VideoArray], bytes]
 
 
 @pytest.fixture(params=[mp4, live, lossless, gif, apng, webp], ids=lambda write: write.__name__)

@@ -13,7 +13,7 @@ import pytest
 from app.errors import BrokenFileError, UnsupportedFormatError
 from app.images.decode import Decoded
 from app.images.video.writers import write_video
-from tests.images.clips import BT601, BT709, FULL, LIMITED, Film, lossless, moving, psnr, video
+from tests.images.clips import BT601, BT709, FULL, LIMITED, VideoArray, lossless, moving, psnr, video
 
 Read = Callable[..., Decoded]
 COLOURS = np.array(
@@ -22,7 +22,7 @@ COLOURS = np.array(
 )
 
 
-def film_of(decoded: Decoded) -> Film:
+def frames_of(decoded: Decoded) -> VideoArray:
     return decoded.pixels.reshape(decoded.frames, -1, *decoded.pixels.shape[1:])
 
 
@@ -30,7 +30,7 @@ def film_of(decoded: Decoded) -> Film:
 def test_a_lossless_video_is_read_exactly(read: Read, shape: tuple[int, int]) -> None:
     film = moving(5, *shape)
     decoded = read(lossless(film))
-    np.testing.assert_array_equal(film_of(decoded), film)
+    np.testing.assert_array_equal(frames_of(decoded), film)
     assert (decoded.frames, decoded.height, decoded.rate) == (5, shape[0], 25.0)
     assert (decoded.media_type, decoded.depth, decoded.alpha) == ("video/webm", 8, None)
 
@@ -51,11 +51,11 @@ def test_a_lossless_video_is_read_exactly(read: Read, shape: tuple[int, int]) ->
 def test_every_codec_and_container_is_read(
     read: Read, codec: str, form: str, options: dict[str, str], media_type: str
 ) -> None:
-    """38 decibels are what the issue asks of a coded film; on so smooth a one every codec gives more."""
+    """38 decibels are what the issue asks of a coded video; on so smooth a one every codec gives more."""
     film = moving(9, 64, 96)
     decoded = read(video(film, codec, form=form, options=options))
     assert (decoded.frames, decoded.rate, decoded.media_type) == (9, 25.0, media_type)
-    assert psnr(film_of(decoded), film) > 38
+    assert psnr(frames_of(decoded), film) > 38
 
 
 @pytest.mark.parametrize("flags", ["faststart", "frag_keyframe+empty_moov", "default_base_moof+frag_every_frame"])
@@ -100,7 +100,7 @@ def test_known_colours_come_back_within_two_levels(
         patches[None].repeat(2, 0), codec, pixels, form=form, matrix=matrix, colours=colours, tagged=tagged,
         options=options,
     )  # fmt: skip
-    seen = film_of(read(data))[1, height // 4 :: height // 2, 16::32][:2].reshape(-1, 3)
+    seen = frames_of(read(data))[1, height // 4 :: height // 2, 16::32][:2].reshape(-1, 3)
     np.testing.assert_allclose(seen.astype(int), COLOURS, atol=2)
 
 
@@ -116,7 +116,7 @@ def test_a_phone_s_video_stands_upright(read: Read, degrees: int, mirrored: bool
         stream=lambda track: track.set_display_rotation(degrees, hflip=mirrored),
     )
     expected = np.rot90(film, degrees // 90, (1, 2))  # anticlockwise, as FFmpeg counts
-    np.testing.assert_array_equal(film_of(read(data)), expected[:, :, ::-1] if mirrored else expected)
+    np.testing.assert_array_equal(frames_of(read(data)), expected[:, :, ::-1] if mirrored else expected)
 
 
 @pytest.mark.parametrize(
@@ -129,7 +129,7 @@ def test_pixels_become_square_and_no_axis_shrinks(read: Read, aspect: str, size:
     def oblong(track: Any) -> None:
         track.codec_context.sample_aspect_ratio = Fraction(aspect)
 
-    assert film_of(read(video(film, stream=oblong))).shape == (2, *size, 3)
+    assert frames_of(read(video(film, stream=oblong))).shape == (2, *size, 3)
 
 
 def test_a_video_without_colour_has_one_channel(read: Read) -> None:
@@ -138,13 +138,13 @@ def test_a_video_without_colour_has_one_channel(read: Read) -> None:
         video(film, "libx264", "gray", colours=FULL, options={"qp": "0"}),
         video(film, "libvpx-vp9", "yuv420p", form="webm", colours=FULL, options={"lossless": "1"}),
     ):
-        np.testing.assert_array_equal(film_of(read(data)), film)
+        np.testing.assert_array_equal(frames_of(read(data)), film)
 
 
 def test_a_video_that_only_begins_without_colour_keeps_it(read: Read) -> None:
     film = moving(4)
     film[0] = film[0, ..., :1]
-    seen = film_of(read(video(film, options={"crf": "4"})))
+    seen = frames_of(read(video(film, options={"crf": "4"})))
     assert seen.shape[3] == 3
     assert psnr(seen, film) > 38
 
@@ -184,7 +184,7 @@ def test_our_own_lossless_videos_are_read_as_they_were_written(
     film = moving(40)[..., :channels]
     write_video(iter(film), tmp_path / "film", "webm", count=40, rate=rate)
     decoded = read((tmp_path / "film").read_bytes())
-    np.testing.assert_array_equal(film_of(decoded), film)
+    np.testing.assert_array_equal(frames_of(decoded), film)
     assert decoded.rate == pytest.approx(rate, rel=1e-7)
 
 
@@ -225,7 +225,7 @@ def test_sound_is_left_aside(read: Read, form: str) -> None:
     film = moving(6)
     decoded = read(with_sound(video(film, options={"crf": "10"}), form))
     assert decoded.frames == 6
-    assert psnr(film_of(decoded), film) > 38
+    assert psnr(frames_of(decoded), film) > 38
 
 
 def test_sound_alone_is_refused(read: Read) -> None:

@@ -7,7 +7,7 @@ from PIL import Image
 from app.settings import ROOT
 
 
-def natural_film(
+def natural_video(
     count: int = 12, height: int = 96, width: int = 128, channels: int = 3, photograph: str = "sand_desert009.png"
 ) -> NDArray[np.uint8]:
     """A crop of a photograph that drifts by parts of a pixel, (T, H, W, C)."""

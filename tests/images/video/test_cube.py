@@ -5,7 +5,7 @@ import pytest
 
 from app.images.convert import GROUND
 from app.images.video.cube import FRONT, LONGEST, MARGIN, SIDE, VideoCube
-from tests.images.video.natural import natural_film
+from tests.images.video.natural import natural_video
 
 
 def picture(film: np.ndarray) -> np.ndarray:
@@ -26,14 +26,14 @@ def dimmed(values: np.ndarray, brightness: float) -> np.ndarray:
 
 @pytest.mark.parametrize("channels", [1, 3])
 def test_the_front_is_the_bottom_row_of_every_frame_and_time_runs_upwards(channels):
-    """A film with a frame for every pixel of three quarters of its width is not stretched in time."""
+    """A video with a frame for every pixel of three quarters of its width is not stretched in time."""
     film = np.random.default_rng(0).integers(0, 256, (36, 20, 48, channels), dtype=np.uint8)
     drawn = block(film)
     assert drawn.shape == (36 + 10, 48 + 10, channels)
     assert (drawn[10:, :48] == dimmed(film[::-1, -1], FRONT)).all()
 
 
-def test_a_short_film_is_stretched_by_whole_numbers():
+def test_a_short_video_is_stretched_by_whole_numbers():
     film = np.broadcast_to(np.arange(0, 250, 25, dtype=np.uint8)[:, None, None, None], (10, 20, 48, 1))
     front = block(film)[10:, 24, 0]
     assert front.shape == (30,)
@@ -113,7 +113,7 @@ def test_a_frame_goes_to_one_layer_from_below_upwards() -> None:
         assert (cube._side == cube._front).all()
 
 
-def test_a_long_film_runs_from_its_first_to_its_last_frame():
+def test_a_long_video_runs_from_its_first_to_its_last_frame():
     times = np.linspace(0, 255, 2000).astype(np.uint8)
     front = block(np.broadcast_to(times[:, None, None, None], (2000, 8, 8, 1)))[4:, 2, 0].astype(int)
     assert front[-1] <= 1
@@ -122,5 +122,5 @@ def test_a_long_film_runs_from_its_first_to_its_last_frame():
 
 
 def test_it_is_the_same_every_time():
-    film = natural_film(20, 60, 80)
+    film = natural_video(20, 60, 80)
     assert (picture(film) == picture(film)).all()

@@ -1,4 +1,4 @@
-"""Several encoders at work at once: all get every frame, and none outlives its film."""
+"""Several encoders at work at once: all get every frame, and none outlives its video."""
 
 import threading
 from collections.abc import Callable
@@ -11,7 +11,7 @@ import pytest
 from app.images.video.encoding import WAITING, Encoding
 from app.images.video.reader import read_video
 from app.images.video.writers import VideoWriter
-from tests.images.video.natural import natural_film
+from tests.images.video.natural import natural_video
 
 
 class FakeWriter:
@@ -51,7 +51,7 @@ def encoders() -> list[str]:
 
 
 def test_every_writer_gets_every_frame(tmp_path):
-    film = natural_film(9, 32, 48)
+    film = natural_video(9, 32, 48)
     writers = [
         VideoWriter(tmp_path / name, "webm", width=48, height=32, channels=3, count=9, rate=24.0) for name in "ab"
     ]

@@ -8,7 +8,7 @@ import pytest
 
 from app.images.video.reader import read_first_frame, read_video
 from app.images.video.writers import Kind, write_video
-from tests.images.video.natural import natural_film
+from tests.images.video.natural import natural_video
 
 
 @pytest.mark.parametrize("channels", [1, 3])
@@ -25,7 +25,7 @@ def test_a_webm_gives_back_its_frames(tmp_path: Path, height: int, width: int, c
 @pytest.mark.parametrize("kind", ["mp4", "webm"])
 def test_a_lossy_file_has_three_channels_within_a_few_levels(tmp_path: Path, kind: Kind) -> None:
     """Not a level darker or lighter on the average: chroma is interpolated between its places."""
-    video = natural_film(6, 48, 64)
+    video = natural_video(6, 48, 64)
     write_video(iter(video), tmp_path / "video", kind, count=6, rate=10.0)
     found = np.stack(list(read_video(tmp_path / "video"))).astype(int)
     assert found.shape == video.shape

@@ -1,4 +1,4 @@
-"""Films as files: what is decoded again, at which rate, in which size, and what it costs."""
+"""Videos as files: what is decoded again, at which rate, in which size, and what it costs."""
 
 from fractions import Fraction
 from pathlib import Path
@@ -14,7 +14,7 @@ from app.images.video.reader import read_first_frame, read_video
 from app.images.video.writers import VideoWriter, name_repeated_edges, write_video
 from tests.images.clips import psnr
 from tests.images.video.memory import printed
-from tests.images.video.natural import natural_film
+from tests.images.video.natural import natural_video
 
 PHOTOGRAPHS = ["sand_desert009.png", "sky_clouds.jpg", "soil_ground010.png", "planks_floor_wood01.png"]
 
@@ -31,7 +31,7 @@ def read(path: Path) -> np.ndarray:
 @pytest.mark.parametrize("channels", [1, 3])
 @pytest.mark.parametrize(("height", "width"), [(96, 128), (61, 83), (1, 1), (2, 37)])
 def test_webm_gives_the_very_frames_back(tmp_path, channels, height, width):
-    film = natural_film(9, height, width, channels)
+    film = natural_video(9, height, width, channels)
     path = written(tmp_path / "film", film, "webm")
     assert (read(path) == film).all()
     assert (read_first_frame(path) == film[0]).all()
@@ -48,14 +48,14 @@ def test_webm_gives_the_very_frames_back_even_of_noise_and_of_cuts(tmp_path, cha
 @pytest.mark.parametrize("photograph", PHOTOGRAPHS)
 def test_mp4_is_within_38_decibels_in_every_frame(tmp_path, photograph):
     """Of natural textures: measured 38.5 (fine-grained wood, 39.1 of which 4:2:0 chroma leaves alone) to 44."""
-    film = natural_film(photograph=photograph)
+    film = natural_video(photograph=photograph)
     decoded = read(written(tmp_path / "film", film, "mp4"))
     assert min(psnr(one, other) for one, other in zip(film, decoded, strict=True)) >= 38
 
 
 @pytest.mark.parametrize("channels", [1, 3])
 def test_webm_that_is_too_long_to_be_lossless_is_close(tmp_path, channels, monkeypatch):
-    film = natural_film(channels=channels)
+    film = natural_video(channels=channels)
     monkeypatch.setattr(writers, "MOST_LOSSLESS", film.size)
     lossless = written(tmp_path / "lossless", film, "webm")
     monkeypatch.setattr(writers, "MOST_LOSSLESS", film.size - 1)
@@ -80,7 +80,7 @@ def test_webm_that_is_too_long_to_be_lossless_is_close(tmp_path, channels, monke
 )
 def test_an_odd_mp4_repeats_its_last_row_and_column_and_says_so(tmp_path, height, width, twice, channels):
     """The file's size is what the writer says, and only the sides that are named grow."""
-    film = natural_film(6, height, width, channels)
+    film = natural_video(6, height, width, channels)
     path = tmp_path / "film"
     writer = VideoWriter(path, "mp4", width=width, height=height, channels=channels, count=6, rate=24.0)
     for frame in film:
@@ -105,7 +105,7 @@ def test_mp4_and_players_agree_on_what_grey_and_colour_mean(tmp_path, level):
 @pytest.mark.parametrize("kind", ["webm", "mp4"])
 @pytest.mark.parametrize("rate", [24, Fraction(24000, 1001), Fraction(30000, 1001), Fraction(100, 7), Fraction(1, 2)])
 def test_the_rate_survives_exactly_and_so_does_the_duration(tmp_path, kind, rate):
-    film = natural_film(7, 16, 16)
+    film = natural_video(7, 16, 16)
     with av.open(written(tmp_path / "film", film, kind, float(rate))) as file:
         track = file.streams.video[0]
         times = [frame.time for frame in file.decode(track)]
@@ -117,19 +117,19 @@ def test_the_rate_survives_exactly_and_so_does_the_duration(tmp_path, kind, rate
 @pytest.mark.parametrize("kind", ["webm", "mp4", "webp"])
 @pytest.mark.parametrize(("height", "width", "channels"), [(200, 240, 3), (61, 83, 1)])
 def test_the_same_frames_give_the_same_bytes(tmp_path, kind, height, width, channels):
-    film = natural_film(12, height, width, channels)
+    film = natural_video(12, height, width, channels)
     first = written(tmp_path / "a", film, kind).read_bytes()
     assert all(written(tmp_path / "b", film, kind).read_bytes() == first for _ in range(3))
 
 
 def test_mp4_begins_with_its_index(tmp_path):
     """A player that is still loading the file can start."""
-    data = written(tmp_path / "film", natural_film(), "mp4").read_bytes()
+    data = written(tmp_path / "film", natural_video(), "mp4").read_bytes()
     assert data.index(b"moov") < data.index(b"mdat")
 
 
 def test_a_player_finds_a_key_frame_every_second(tmp_path):
-    film = natural_film(26, 32, 32)
+    film = natural_video(26, 32, 32)
     for kind in ("webm", "mp4"):
         with av.open(written(tmp_path / "film", film, kind, 12.0)) as file:
             keys = [(packet.pts or 0) * packet.time_base for packet in file.demux(video=0) if packet.is_keyframe]
@@ -138,7 +138,7 @@ def test_a_player_finds_a_key_frame_every_second(tmp_path):
 
 @pytest.mark.parametrize("channels", [1, 3])
 def test_the_preview_is_small_and_loops_for_ever(tmp_path, channels):
-    film = natural_film(12, 200, 400, channels)
+    film = natural_video(12, 200, 400, channels)
     preview: Any
     with Image.open(written(tmp_path / "film", film, "webp")) as preview:
         assert (preview.size, preview.n_frames, preview.info["loop"]) == ((256, 128), 12, 0)
@@ -172,7 +172,7 @@ def test_a_long_preview_leaves_frames_out_and_lasts_as_long(tmp_path, count, rat
 @pytest.mark.parametrize("kind", ["webm", "mp4", "webp"])
 def test_what_is_not_finished_does_not_stay(tmp_path, kind, frames):
     writer = VideoWriter(tmp_path / "film", kind, width=32, height=32, channels=3, count=9, rate=24.0)
-    for frame in natural_film(frames, 32, 32) if frames else ():
+    for frame in natural_video(frames, 32, 32) if frames else ():
         writer.write(frame)
     writer.close()
     assert list(tmp_path.iterdir()) == []

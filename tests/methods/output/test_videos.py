@@ -17,7 +17,7 @@ from app.methods.model import Clip, Source
 from app.methods.output.videos import encode_crop, encode_texture, encoding_bytes
 from tests.images.clips import psnr
 from tests.images.video.memory import printed
-from tests.images.video.natural import natural_film
+from tests.images.video.natural import natural_video
 from tests.synthesis.stopping import StopError, stops_at
 
 
@@ -42,7 +42,7 @@ def nothing_stays(scratch: Path) -> bool:
 
 @pytest.mark.parametrize("channels", [1, 3])
 def test_a_texture_is_a_film_for_every_use_and_a_cube(tmp_path, channels):
-    film = natural_film(12, 61, 83, channels)
+    film = natural_video(12, 61, 83, channels)
     made = {picture.name: picture for picture in texture(iter(film), film.shape, tmp_path)}
     assert list(made) == ["texture", "texture-mp4", "preview", "cube"]
     assert [picture.kind for picture in made.values()] == ["texture", "view", "view", "view"]
@@ -68,7 +68,7 @@ def test_values_are_rounded_once_and_cut_off(tmp_path):
 
 
 def test_a_maker_may_use_the_memory_of_a_frame_again(tmp_path):
-    film = natural_film(12, 40, 48)
+    film = natural_video(12, 40, 48)
 
     def frames():
         kept = np.empty(film.shape[1:], np.float32)
@@ -80,7 +80,7 @@ def test_a_maker_may_use_the_memory_of_a_frame_again(tmp_path):
 
 
 def test_frames_are_asked_for_one_by_one_and_let_go(tmp_path):
-    film = natural_film(40, 16, 16)
+    film = natural_video(40, 16, 16)
     given = []
 
     def frames():
@@ -96,7 +96,7 @@ def test_frames_are_asked_for_one_by_one_and_let_go(tmp_path):
 
 
 def test_two_runs_give_the_same_bytes(tmp_path):
-    film = natural_film(10, 100, 120)
+    film = natural_video(10, 100, 120)
     first, second = (
         [
             picture.data if isinstance(picture.data, bytes) else picture.data.read_bytes()
@@ -108,7 +108,7 @@ def test_two_runs_give_the_same_bytes(tmp_path):
 
 
 def test_an_input_is_shown_exactly_as_it_was_cropped(tmp_path):
-    film = natural_film(9, 40, 54)
+    film = natural_video(9, 40, 54)
     calls = []
     progress = lambda stage, part: calls.append((stage, part))  # noqa: E731
     made = {picture.name: picture for picture in encode_crop(source(film, 24000 / 1001), context(tmp_path, progress))}
@@ -123,7 +123,7 @@ def test_an_input_is_shown_exactly_as_it_was_cropped(tmp_path):
 
 
 def test_the_taker_owns_a_picture_and_what_is_not_taken_does_not_stay(tmp_path):
-    film = natural_film(5, 32, 32)
+    film = natural_video(5, 32, 32)
     pictures = texture(iter(film), film.shape, tmp_path)
     taken = [next(pictures).data, next(pictures).data]
     pictures.close()
@@ -134,7 +134,7 @@ def test_the_taker_owns_a_picture_and_what_is_not_taken_does_not_stay(tmp_path):
 
 
 def test_a_run_that_ends_while_frames_are_made_leaves_nothing(tmp_path):
-    film = natural_film(12, 64, 64)
+    film = natural_video(12, 64, 64)
 
     def frames():
         yield from film[:7]
@@ -146,7 +146,7 @@ def test_a_run_that_ends_while_frames_are_made_leaves_nothing(tmp_path):
 
 
 def test_progress_stops_the_encoders_too(tmp_path):
-    film = natural_film(6, 64, 64)
+    film = natural_video(6, 64, 64)
     stops_at(1, lambda progress: list(texture(iter(film), film.shape, tmp_path, progress)))
     assert nothing_stays(tmp_path)
     for count in (1, 4, 7):
