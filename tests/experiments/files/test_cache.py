@@ -1,5 +1,6 @@
 """Files that can be made again."""
 
+import os
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from threading import Barrier, Event
@@ -60,3 +61,65 @@ def test_what_fails_leaves_nothing_and_can_be_tried_again(tmp_path: Path) -> Non
         cache.file("film.mp4", fail)
     assert list(tmp_path.iterdir()) == []
     assert cache.get("film.mp4", lambda: b"whole").read_bytes() == b"whole"
+
+
+def filled(cache: FileCache, directory: Path, *sizes: int) -> list[Path]:
+    """Files of these sizes, each used a minute after the one before it, long ago."""
+    paths = []
+    for number, size in enumerate(sizes):
+        path = cache.get(f"{number}", lambda size=size: b"x" * size)  # type: ignore[misc] # a default binds the size
+        os.utime(path, (1000 + 60 * number,) * 2)
+        paths.append(path)
+    assert all(path.parent == directory for path in paths)
+    return paths
+
+
+@pytest.mark.parametrize(("last", "gone"), [(100, 0), (101, 1), (200, 1), (201, 2), (901, 9)])
+def test_files_unused_for_longest_go_until_a_tenth_of_the_room_is_free(tmp_path: Path, last: int, gone: int) -> None:
+    """Of 1,000 bytes 900 are left; not one file more than needed goes."""
+    cache = FileCache(tmp_path, 1000)
+    paths = filled(cache, tmp_path, *[100] * 8)
+    paths.append(cache.get("last", lambda: b"x" * last))
+    cache.get("more", lambda: b"")
+    cache._make_room(1000)
+    assert [path.exists() for path in paths] == [number >= gone for number in range(9)]
+
+
+def test_what_is_asked_for_again_counts_as_used(tmp_path: Path) -> None:
+    cache = FileCache(tmp_path, 1000)
+    paths = filled(cache, tmp_path, *[100] * 8)
+    assert cache.get("0", lambda: pytest.fail("it is there")) == paths[0]
+    assert cache.file("1", lambda path: pytest.fail("it is there")) == paths[1]
+    cache.get("last", lambda: b"x" * 250)
+    cache._make_room(1000)
+    assert [path.exists() for path in paths] == [number not in (2, 3) for number in range(8)]
+
+
+@pytest.mark.parametrize(("added", "looks"), [(99, False), (100, True)])
+def test_the_directory_is_looked_at_after_a_tenth_of_the_room_was_written(
+    tmp_path: Path, added: int, looks: bool
+) -> None:
+    cache = FileCache(tmp_path, 1000)
+    cache._make_room(0)  # the first one looks at what is there
+    (tmp_path / "large").write_bytes(b"x" * 2000)
+    cache.get("small", lambda: b"x" * added)
+    assert (tmp_path / "large").exists() is not looks
+
+
+def test_a_file_that_somebody_else_removes_meanwhile_is_no_fault(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cache = FileCache(tmp_path, 1000)
+    paths = filled(cache, tmp_path, 500, 500)
+    listed = [*tmp_path.iterdir(), tmp_path / "gone"]
+    monkeypatch.setattr(Path, "iterdir", lambda path: iter(listed))
+    cache._make_room(1000)
+    assert [path.exists() for path in paths] == [False, True]
+
+
+def test_what_was_made_of_an_original_is_forgotten_and_nothing_else(tmp_path: Path) -> None:
+    cache = FileCache(tmp_path, 1000)
+    for name in ("abc-256.jpeg", "abc.png", "abd-256.jpeg"):
+        cache.get(name, lambda: b"x")
+    cache.forget("abc")
+    assert [path.name for path in tmp_path.iterdir()] == ["abd-256.jpeg"]
