@@ -6,11 +6,13 @@ import socket
 import subprocess
 import sys
 from types import SimpleNamespace
+from typing import cast
 
 import httpx
 import pytest
 
 from app.experiments.model import Snapshot, Status
+from app.experiments.service import Service
 from app.main import create_app
 from app.settings import ROOT, Settings
 
@@ -71,7 +73,7 @@ def test_an_event_is_sent_for_every_change_and_says_all_of_it(serving, tmp_path)
         experiments=SimpleNamespace(get=lambda experiment_id: None),
         watching=SimpleNamespace(watch=watch),
     )
-    with serving(create_app(Settings(data_dir=tmp_path), service)) as url:
+    with serving(create_app(Settings(data_dir=tmp_path), cast(Service, service))) as url:
         told = list(events(httpx.get(f"{url}/api/v1/experiments/x/events")))
     assert [(event["id"], event["event"], tuple(event["data"].values())) for event in told] == [
         ("1", "progress", ("queued", 2, 0.0, None, 0.0)),
@@ -140,6 +142,7 @@ def test_a_server_that_is_told_to_stop_ends_its_streams(tmp_path, until):
 import asyncio
 import uvicorn
 from app.experiments.model import Snapshot, Status
+from app.experiments.service import Service
 from app.main import create_app
 from app.settings import Settings
 
