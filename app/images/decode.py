@@ -11,7 +11,7 @@ import numpy as np
 from app.errors import BrokenFileError, TooLargeError, UnsupportedFormatError
 from app.images.colour import to_srgb
 from app.images.formats import animation, jpeg, png, tiff, video, webp
-from app.images.formats.clip import Clip, ClipLimits, TimedFrame
+from app.images.formats.clip import ClipLimits, ClipStream, TimedFrame
 from app.images.formats.containers import identify_container
 from app.images.formats.still import Raw, is_opaque, split_alpha, turn_upright
 from app.images.media import Media
@@ -127,7 +127,7 @@ def decode(path: Path, limits: Limits) -> Decoded:
     return Decoded(**found.media(times).properties(), pixels=pixels, alpha=alpha)
 
 
-def read(path: Path, limits: Limits) -> Decoded | Clip:
+def read(path: Path, limits: Limits) -> Decoded | ClipStream:
     """Decode an uploaded picture, or begin to decode a video.
 
     The format is recognised by the content, never by the name. Nothing here limits time or memory:
@@ -140,7 +140,7 @@ def read(path: Path, limits: Limits) -> Decoded | Clip:
 
     Returns
     -------
-    Decoded or Clip
+    Decoded or ClipStream
         A still picture, or a video or animation whose frames are decoded while they are taken; taking them raises the
         same errors.
 

@@ -10,7 +10,7 @@ import pytest
 
 from app.experiments.model import Output, Sample
 from app.images.decode import Decoded
-from app.images.formats.clip import Clip
+from app.images.formats.clip import ClipStream
 from app.images.intake.client import Intake
 from app.images.media import STILL, Media
 from app.methods.model import Fact, Picture
@@ -62,11 +62,11 @@ def test_a_still_picture_is_described_by_its_arrays(channels: int, dtype: type, 
     ("channels", "colours", "transparent"), [(1, 1, False), (2, 1, True), (3, 3, False), (4, 3, True)]
 )
 def test_a_clip_is_described_once_its_frames_are_counted(channels: int, colours: int, transparent: bool) -> None:
-    clip = Clip(64, 48, channels, "image/gif", iter(()))
+    clip = ClipStream(64, 48, channels, "image/gif", iter(()))
     assert clip.media([0.0, 0.25, 0.5]) == Media(64, 48, colours, 8, transparent, 3, 4.0, "image/gif")
     assert clip.media([0.0, 0.25, 0.5]).moving
 
 
 def test_a_clip_of_one_frame_is_a_still_picture() -> None:
-    found = Clip(64, 48, 3, "image/gif", iter(())).media([0.0])
+    found = ClipStream(64, 48, 3, "image/gif", iter(())).media([0.0])
     assert (found.frames, found.rate, found.media_type, found.moving) == (1, 0.0, STILL, False)

@@ -16,7 +16,7 @@ from PIL import Image
 from app.errors import BrokenFileError, UnsupportedFormatError
 from app.images.colour import to_srgb
 from app.images.formats import png, webp
-from app.images.formats.clip import Clip, ClipLimits, TimedFrame, check_clip
+from app.images.formats.clip import ClipLimits, ClipStream, TimedFrame, check_clip
 from app.images.formats.still import DAMAGED, check_size, is_opaque, read_orientation, turn_upright
 from app.images.png_writer import HEADER, SIGNATURE
 from app.synthesis.arrays import Bytes
@@ -44,7 +44,7 @@ def is_animation(data: bytes) -> bool:
     return False
 
 
-def decode(data: bytes, max_pixels: int, limits: ClipLimits) -> Clip:
+def decode(data: bytes, max_pixels: int, limits: ClipLimits) -> ClipStream:
     """Decode an animation; its frames are composed while they are taken.
 
     Parameters
@@ -57,7 +57,7 @@ def decode(data: bytes, max_pixels: int, limits: ClipLimits) -> Clip:
 
     Returns
     -------
-    Clip
+    ClipStream
 
     Raises
     ------
@@ -98,7 +98,7 @@ def decode(data: bytes, max_pixels: int, limits: ClipLimits) -> Clip:
                 yield TimedFrame(frame, shown * interval)
                 shown += 1
 
-    return Clip(width, height, channels, MEDIA_TYPES[file_format], frames())
+    return ClipStream(width, height, channels, MEDIA_TYPES[file_format], frames())
 
 
 def _read_header(data: bytes) -> tuple[str, int, int]:

@@ -23,14 +23,14 @@ class ClipLimits:
 
 
 class TimedFrame(NamedTuple):
-    """A frame and when it is shown: ``pixels`` is (H, W, C) uint8, upright and in sRGB, C as `Clip.channels`."""
+    """A frame and when it is shown: ``pixels`` is (H, W, C) uint8, upright and in sRGB, C as `ClipStream.channels`."""
 
     pixels: Pixels
     seconds: float
 
 
 @dataclass(frozen=True)
-class Clip:
+class ClipStream:
     """An uploaded video or animation, whose ``frames`` are decoded while they are taken, once.
 
     ``channels`` is 1 grey, 2 grey and alpha, 3 RGB, 4 RGB and alpha; ``media_type`` is what the file is,

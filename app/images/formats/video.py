@@ -24,7 +24,7 @@ from av.video.reformatter import ColorRange, Colorspace, ColorTrc, Interpolation
 from av.video.stream import VideoStream
 
 from app.errors import BrokenFileError, UnsupportedFormatError
-from app.images.formats.clip import USUAL_RATE, Clip, ClipLimits, TimedFrame, check_clip, limit_clip
+from app.images.formats.clip import USUAL_RATE, ClipLimits, ClipStream, TimedFrame, check_clip, limit_clip
 from app.images.formats.containers import Container
 from app.images.formats.still import check_size, is_opaque, turn_upright
 
@@ -68,7 +68,7 @@ ORIENTATIONS = {
 av.logging.set_level(None)  # FFmpeg would report every broken file on standard error
 
 
-def decode(data: bytes, container: Container, max_pixels: int, limits: ClipLimits) -> Clip:
+def decode(data: bytes, container: Container, max_pixels: int, limits: ClipLimits) -> ClipStream:
     """Decode a video; its frames are decoded while they are taken, and the errors below may come as late as that.
 
     Parameters
@@ -83,7 +83,7 @@ def decode(data: bytes, container: Container, max_pixels: int, limits: ClipLimit
 
     Returns
     -------
-    Clip
+    ClipStream
 
     Raises
     ------
@@ -103,7 +103,7 @@ def decode(data: bytes, container: Container, max_pixels: int, limits: ClipLimit
         channels = 3
     if channels == 1 and not track.is_grey():
         channels = 3
-    return Clip(track.width, track.height, channels, container.media_type, track.frames(channels), track.rate)
+    return ClipStream(track.width, track.height, channels, container.media_type, track.frames(channels), track.rate)
 
 
 class _VideoTrack:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from app.images.decode import Decoded, Limits, read
-from app.images.formats.clip import Clip
+from app.images.formats.clip import ClipStream
 from app.images.media import Media
 from app.images.png_writer import Pixels, PngWriter
 
@@ -39,7 +39,7 @@ def store(path: Path, destination: Path, limits: Limits) -> Media:
         As `app.images.decode.read`.
     """
     found = read(path, limits)
-    if isinstance(found, Clip):
+    if isinstance(found, ClipStream):
         return _store_clip(found, destination)
     destination.write_bytes(encode_picture(found))
     return found
@@ -58,7 +58,7 @@ def encode_picture(picture: Decoded) -> bytes:
     return writer.finish()
 
 
-def _store_clip(clip: Clip, destination: Path) -> Media:
+def _store_clip(clip: ClipStream, destination: Path) -> Media:
     writer = PngWriter(clip.width, None, clip.channels, 8)
     times: list[float] = []
     waiting: deque[Future[None]] = deque()

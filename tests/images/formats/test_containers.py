@@ -46,6 +46,9 @@ UNKNOWN_1, UNKNOWN_8 = "FF", "01FFFFFFFFFFFFFF"
         (box(b"mdat", bytes(40), size=0), True),
         (box(b"mdat", bytes(40), size=8), True),  # the zeros after it are a last box
         *((box(b"mdat", bytes(40), size=size), False) for size in (2, 4, 7)),
+        # What comes after so few bytes would be a box up to the end of the file.
+        (box(bytes(4), bytes(8), size=4), False),
+        (long_box(bytes(4), bytes(8), size=4), False),
         (long_box(b"mdat", bytes(5)), True),
         (long_box(b"mdat", bytes(5), size=22), False),
         (long_box(b"mdat", bytes(5)) + box(b"moov", bytes(3)), True),

@@ -11,7 +11,7 @@ import pytest
 from numpy.typing import NDArray
 
 from app.images.decode import Decoded, Limits
-from app.images.formats.clip import Clip, TimedFrame
+from app.images.formats.clip import ClipStream, TimedFrame
 from app.images.intake import store as module
 from app.images.intake.store import STRIP_PIXELS, STRIP_ROWS, encode_picture, store
 from app.images.media import Media
@@ -49,11 +49,11 @@ def test_strips_are_small_but_not_lower_than_a_crop_is_worth(width: int, rows: i
     assert strip_rows(png) == [rows, rows // 2]
 
 
-def clip_of(frames: NDArray[np.uint8], times: list[float], media_type: str = "video/mp4") -> Clip:
+def clip_of(frames: NDArray[np.uint8], times: list[float], media_type: str = "video/mp4") -> ClipStream:
     def yielding() -> Iterator[TimedFrame]:
         yield from map(TimedFrame, frames, times)
 
-    return Clip(frames.shape[2], frames.shape[1], frames.shape[3], media_type, yielding())
+    return ClipStream(frames.shape[2], frames.shape[1], frames.shape[3], media_type, yielding())
 
 
 @pytest.mark.parametrize("channels", [1, 2, 3, 4])
