@@ -13,7 +13,7 @@ export PIP_NO_INPUT := 1
 
 .DEFAULT_GOAL := help
 .PHONY: help setup run dev check fix test lint lint-python lint-templates lint-js types test-js test-fast \
-	test-313 test-without-browser programs chaos load bench new-method lock dist readme-picture clean
+	test-313 test-without-browser programs chaos load bench mutants new-method lock dist readme-picture clean
 
 help: ## list these targets
 	@awk -F ':.*## ' '/^[a-z0-9-]+:.*## / { printf "  make %-15s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -78,6 +78,11 @@ lint-js: node_modules/.ready
 
 test-js: node_modules/.ready
 	$(BIN)/node --test --test-reporter=dot 'tests/js/*.test.js'
+
+mutants: programs ## break the code in EACH places of every part, one at a time, in a copy, and list what no test notices: an hour
+	$(BIN)/python -m scripts.mutants --each $(EACH) $(if $(SEED),--seed $(SEED))
+
+EACH = 60
 
 new-method: $(VENV)/.ready-dev ## the files of a new method to start from: NAME=my-method, FAMILY=sampling (default: gaussian)
 	@$(BIN)/python scripts/new_method.py "$(NAME)" --family "$(FAMILY)"
