@@ -29,6 +29,8 @@ GROUPS = {
     "web and images": ("app/web/|app/images/", 92),
     "scripts of the pages": ("static/js/", 85),
 }
+SCRIPT_TESTS = [str(Path(sys.executable).parent / "node"), "--test", "tests/js/*.test.js"]
+SCRIPTS = "scripts of the pages"
 LEFT_OUT = "acceptance or chaos or load"
 HANGS = 30  # seconds without a test that ends
 
@@ -67,6 +69,13 @@ def begin(command: list[str], root: Path, output: Path) -> subprocess.Popen[byte
         )
 
 
+def learn_scripts(root: Path) -> None:
+    """Run the tests of the pages' scripts once."""
+    output = root / "learned.txt"
+    if begin(SCRIPT_TESTS, root, output).wait():
+        sys.exit(f"The scripts' tests fail without a mutant:\n{output.read_text(errors='replace')[-3000:]}")
+
+
 def learn(root: Path, options: Options) -> None:
     """Run every test once, so that testmon knows what each of them runs."""
     if (ROOT / ".testmondata").exists():
@@ -81,10 +90,7 @@ def verdict(root: Path, mutant: Mutant, options: Options) -> str:
     """``killed``, ``hangs`` or ``survived``, and what ran."""
     file, output = root / mutant.path, root / "mutant.txt"
     original = file.read_text(encoding="utf-8")
-    if mutant.path.endswith(".js"):
-        command = [str(Path(sys.executable).parent / "node"), "--test", "tests/js/*.test.js"]
-    else:
-        command = pytest(options, "-x", "--testmon", "--testmon-nocollect")
+    command = SCRIPT_TESTS if mutant.path.endswith(".js") else pytest(options, "-x", "--testmon", "--testmon-nocollect")
     file.write_text(mutant.text, encoding="utf-8")
     process = begin(command, root, output)
     try:
@@ -112,7 +118,7 @@ def sample(pattern: str, options: Options) -> list[Mutant]:
     """The mutants of a group that are tried: by the seed, from all files alike."""
     listed = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=True).stdout.split()
     paths = [path for path in listed if re.match(pattern, path) and path.endswith((".py", ".js"))]
-    if pattern == GROUPS["scripts of the pages"][0]:  # those that run without a browser
+    if pattern == GROUPS[SCRIPTS][0]:  # those that run without a browser
         tests = "".join(file.read_text(encoding="utf-8") for file in (ROOT / "tests" / "js").glob("*.test.js"))
         paths = [path for path in paths if Path(path).name in tests]
     found = [mutant for path in paths for mutant in mutants_of(ROOT, path)]
@@ -134,7 +140,9 @@ def main() -> None:
     with tempfile.TemporaryDirectory(prefix="mutants-") as directory:
         roots = [Path(directory) / str(number) for number in range(options.jobs)]
         copy(roots[0])
-        if any(group != "scripts of the pages" for group in groups):
+        if SCRIPTS in groups:
+            learn_scripts(roots[0])
+        if groups != [SCRIPTS]:
             learn(roots[0], options)
         free: SimpleQueue[Path] = SimpleQueue()
         for root in roots:

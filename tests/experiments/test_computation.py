@@ -55,7 +55,7 @@ def test_a_cancelled_job_at_16_bits_stays_cancelled(
     store: SqlStore, blobs: FileBlobs, made: Experiment, broken: Breaking, caplog: pytest.LogCaptureFixture
 ) -> None:
     broken(CancelledError("The experiment was cancelled."))
-    with pytest.raises(CancelledError):
+    with pytest.raises(CancelledError, match="The experiment was cancelled"):
         run_job(store, blobs, deep_job(made.id, "periodic"), silent, threads=1)
     assert store.get(made.id) == made
     assert caplog.records == []

@@ -77,12 +77,12 @@ def test_it_is_in_no_archive_and_survives_pruning(filled: Service, monkeypatch: 
     monkeypatch.setattr("app.experiments.housekeeping.exhibits", lambda: {identifier(WAVES): WAVES})
     assert filled.housekeeping.prune(timedelta(0)).experiments == 1
     assert filled.exhibition.find(WAVES).status is Status.SUCCEEDED
-    with pytest.raises(DeletedError):
+    with pytest.raises(DeletedError, match="This experiment was deleted by its owner"):
         filled.experiments.get(identifier(PLASTER))
 
 
 def test_only_the_operator_may_delete_it_and_it_stays_deleted_until_made_again(filled: Service) -> None:
-    with pytest.raises(ForbiddenError):
+    with pytest.raises(ForbiddenError, match="Only the owner of this experiment may do this"):
         filled.experiments.cancel_or_delete(identifier(WAVES), exhibition.OWNER)
     filled.experiments.cancel_or_delete(identifier(WAVES), "the operator")
     assert filled.exhibition.find(WAVES) is None
@@ -272,7 +272,7 @@ def test_an_exhibit_that_nobody_made_is_not_found_but_can_be_prepared(filled: Se
     other = Exhibit("rpn", WAVES.inputs, {"seed": 3})
     assert filled.exhibition.find(other) is None
     assert filled.exhibition.prepare(other).parameters["width"] == 64
-    with pytest.raises(NotFoundError):
+    with pytest.raises(NotFoundError, match="There is no such photograph"):
         filled.exhibition.prepare(Exhibit("rpn", (("nothing", "0,0,9,9"),)))
 
 

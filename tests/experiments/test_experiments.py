@@ -77,7 +77,7 @@ def test_deleting_an_experiment_cancels_the_job_of_every_output_at_16_bits(
     service.experiments.cancel_or_delete(experiment.id, OWNER)
     jobs = [job for what, job in notes if what == "cancel"]
     assert jobs == [f"{experiment.id}{DEEP}{output.name}" for output in experiment.outputs]
-    with pytest.raises(DeletedError):
+    with pytest.raises(DeletedError, match="This experiment was deleted by its owner"):
         service.experiments.get(experiment.id)
 
 
@@ -123,7 +123,7 @@ def test_discarding_stops_what_runs_and_leaves_nothing(
     service = make_service()
     experiment = service.submission.submit_transient(a_request(service.samples.add(upload, None)))
     service.experiments.discard(experiment)
-    with pytest.raises(NotFoundError):
+    with pytest.raises(NotFoundError, match="There is no such experiment"):
         service.experiments.get(experiment.id)
     assert service.waiting == 0
     assert stored() == set()

@@ -144,6 +144,6 @@ def test_what_it_would_take_is_known_before_it_is_run(service: Service, sample: 
     plan = service.submission.check(request(sample, width=50))
     assert (plan.width, plan.height, plan.frames) == (50, 36, 8)
     assert 0 < plan.memory < plan.memory_limit
-    with pytest.raises(TooLargeError):
+    with pytest.raises(TooLargeError, match="A texture of 4096 × 17 has 0 megapixels; this service"):
         service.submission.check(request(sample, width=4096, height=17))
     assert service.experiments.counts()["queued"] == 0

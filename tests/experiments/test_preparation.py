@@ -50,7 +50,7 @@ def test_too_few_or_too_many_inputs_are_refused_with_the_number_it_takes(method:
 
 
 def test_the_crop_at_fault_is_named() -> None:
-    with pytest.raises(InvalidInputError) as refused:
+    with pytest.raises(InvalidInputError, match="The crop 50,0,64,32 reaches outside the photograph, which") as refused:
         prepared("mix", "sand", "moss", crop=Rectangle(50, 0, 64, 32))
     assert refused.value.field == "inputs.1.crop"
 

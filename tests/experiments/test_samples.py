@@ -95,7 +95,7 @@ def test_an_upload_is_found_again_and_only_its_owners_digest_is_kept(
     assert (sample.title, sample.bundled, sample.moving) == (None, False, False)
     assert service.samples.bundled() == []
     assert owners == [None if owner is None else token_digest(owner)]
-    with pytest.raises(NotFoundError):
+    with pytest.raises(NotFoundError, match="There is no such photograph"):
         service.samples.get("nothing")
 
 
@@ -103,7 +103,7 @@ def test_an_upload_that_cannot_be_read_leaves_nothing(
     service: Service, upload: Path, stored: Callable[[], set[str]]
 ) -> None:
     upload.write_bytes(b"\x89PNG\r\n\x1a\n and no more")
-    with pytest.raises(BrokenFileError):
+    with pytest.raises(BrokenFileError, match="This PNG file is damaged or incomplete"):
         service.samples.add(upload, None)
     assert not upload.exists()
     assert stored() == set()

@@ -127,7 +127,7 @@ def test_an_upload_is_gone_whatever_comes_of_it(service: Service, upload: Path, 
     assert not upload.exists()
     upload.write_bytes(b"\x89PNG\r\n\x1a\n and no more")
     before = stored()
-    with pytest.raises(BrokenFileError):
+    with pytest.raises(BrokenFileError, match="This PNG file is damaged or incomplete"):
         service.samples.add(upload, None)
     assert not upload.exists()
     assert stored() == before
@@ -140,9 +140,9 @@ def test_only_its_owner_and_the_operator_may_change_an_experiment(
     assert settings.operator_token is not None
     operator = settings.operator_token.get_secret_value()
     for stranger in (None, "", "another token", experiment.owner, "\ud800"):
-        with pytest.raises(ForbiddenError):
+        with pytest.raises(ForbiddenError, match="Only the owner of this experiment may do this"):
             service.experiments.cancel_or_delete(experiment.id, stranger)
-        with pytest.raises(ForbiddenError):
+        with pytest.raises(ForbiddenError, match="Only the owner of this experiment may do this"):
             service.experiments.set_listed(experiment.id, False, stranger)
     service.experiments.set_listed(experiment.id, False, OWNER)
     assert service.experiments.page().experiments == ()
@@ -161,11 +161,11 @@ def test_deleting_removes_what_nothing_else_refers_to(
     service.outputs.get(one.id, ".preview")
     service.renditions.image(sample, 100)
     service.experiments.cancel_or_delete(one.id, OWNER)
-    with pytest.raises(DeletedError):
+    with pytest.raises(DeletedError, match="This experiment was deleted by its owner"):
         service.experiments.get(one.id)
     assert service.outputs.get(twin.id, "texture")[1].exists()
     service.experiments.cancel_or_delete(twin.id, OWNER)
-    with pytest.raises(NotFoundError):
+    with pytest.raises(NotFoundError, match="There is no such photograph"):
         service.samples.get(sample.id)
     assert stored() == set()
 
@@ -195,7 +195,7 @@ def test_one_too_many_is_told_to_come_back(
     service = make_service()
     sample = service.samples.add(upload, None)
     waiting = [service.submission.submit(a_request(sample), OWNER) for _ in range(settings.queue_limit)]
-    with pytest.raises(BusyError):
+    with pytest.raises(BusyError, match="Try again in a minute"):
         service.submission.submit(a_request(sample), OWNER)
     assert [service.watching.snapshot(each.id).position for each in waiting] == [1, 2, 3]
     service.start()
@@ -259,7 +259,7 @@ def test_a_failed_run_says_why(service: Service, sample: Sample, monkeypatch: py
     assert experiment.status is Status.FAILED
     assert experiment.error is not None
     assert "memory" in experiment.error
-    with pytest.raises(NotFoundError):
+    with pytest.raises(NotFoundError, match="This experiment has no output 'texture'"):
         service.outputs.get(experiment.id, "texture")
 
 
@@ -274,7 +274,7 @@ def test_pruning_removes_old_experiments_and_strays_only(
     assert (kept.experiments, kept.samples, kept.files) == (0, 0, 1)
     gone = service.housekeeping.prune(timedelta(0))
     assert gone.experiments == 1
-    with pytest.raises(DeletedError):
+    with pytest.raises(DeletedError, match="This experiment was deleted by its owner"):
         service.experiments.get(experiment.id)
     assert stored() == set()
 

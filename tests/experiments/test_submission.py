@@ -52,7 +52,7 @@ def test_checking_says_what_would_be_made_and_keeps_nothing(idle: Service, waiti
     assert plan.memory_limit > 0
     assert sum(idle.experiments.counts().values()) == 0
     assert idle.waiting == 0
-    with pytest.raises(InvalidInputError):
+    with pytest.raises(InvalidInputError, match="Width is a whole number from 1 to 1000000; got 0"):
         idle.submission.check(a_request(waiting, width=0))
 
 
@@ -83,7 +83,7 @@ def test_a_press_whose_experiment_was_deleted_makes_a_new_one(idle: Service, wai
     idle.experiments.discard(first)
     again = idle.submission.submit(a_request(waiting), OWNER, PRESS)
     assert again.id != first.id
-    with pytest.raises(DeletedError):
+    with pytest.raises(DeletedError, match="This experiment was deleted by its owner"):
         idle.experiments.get(first.id)
 
 

@@ -39,7 +39,7 @@ def test_a_texture_straight_from_a_file_leaves_nothing_behind(
 def test_a_refused_texture_straight_from_a_file_leaves_nothing_behind(
     service: Service, upload: Path, stored: Stored
 ) -> None:
-    with pytest.raises(InvalidInputError):
+    with pytest.raises(InvalidInputError, match="The crop 0,0,999,9 reaches outside the photograph, which"):
         asyncio.run(
             service.transient.synthesize([upload], method="rpn", crops=[Rectangle(0, 0, 999, 9)], parameters={})
         )
@@ -104,7 +104,7 @@ def test_more_crops_than_files_are_refused_and_leave_nothing_behind(
 def test_of_several_files_none_is_left_if_one_is_no_picture(service: Service, upload: Path, stored: Stored) -> None:
     broken = upload.with_name("broken")
     broken.write_bytes(b"no picture")
-    with pytest.raises(UnsupportedFormatError):
+    with pytest.raises(UnsupportedFormatError, match="This file is not in a format that can be read"):
         asyncio.run(service.transient.synthesize([upload, broken], method="rpn", crops=[], parameters={}))
     assert not upload.exists()
     assert not broken.exists()

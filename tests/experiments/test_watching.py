@@ -152,7 +152,7 @@ def test_the_end_of_a_deleted_experiment_is_an_error(following: Callable[..., Wa
             raise NotFoundError("There is no such experiment.")
 
     watch = following(Gone(), Engine(RUNNING, None))
-    with pytest.raises(NotFoundError):
+    with pytest.raises(NotFoundError, match="There is no such experiment"):
         watched(watch)
     assert watch._listeners == {}
 

@@ -79,7 +79,7 @@ def test_what_the_progress_raises_ends_the_run_and_leaves_no_file(method: Method
             raise CancelledError("enough")
 
     pictures = run_small(method, sources_for(method), scratch=tmp_path, progress=progress)
-    with pytest.raises(CancelledError):
+    with pytest.raises(CancelledError, match="enough"):
         taken.extend(picture.data for picture in pictures if isinstance(picture.data, Path))
     assert set(tmp_path.iterdir()) == set(taken)
 

@@ -35,7 +35,7 @@ def test_a_file_that_is_put_leaves_nothing_else(blobs: FileBlobs) -> None:
 
 @pytest.mark.parametrize("digest", ["0" * 64, ""])
 def test_a_file_that_is_not_there_is_not_found(blobs: FileBlobs, digest: str) -> None:
-    with pytest.raises(NotFoundError):
+    with pytest.raises(NotFoundError, match="This file is not here any more"):
         blobs.path(digest)
 
 

@@ -63,22 +63,22 @@ def test_survives_reopening(store: SqlStore, sample: Sample, open_store: Callabl
 
 @pytest.mark.parametrize("name", ["", "nothing", "with\0nul", "\ud800", "x" * 10_000])
 def test_says_that_it_does_not_know_a_name(store: SqlStore, name: str) -> None:
-    with pytest.raises(NotFoundError):
+    with pytest.raises(NotFoundError, match="There is no such experiment"):
         store.get(name)
-    with pytest.raises(NotFoundError):
+    with pytest.raises(NotFoundError, match="There is no such photograph"):
         store.sample(name)
     assert store.page(limit=3, method=name).experiments == ()
 
 
 def test_refuses_an_experiment_of_a_sample_that_is_gone(store: SqlStore) -> None:
-    with pytest.raises(NotFoundError):
+    with pytest.raises(NotFoundError, match="There is no such photograph"):
         store.add(an_experiment(a_sample()))
 
 
 def test_refuses_the_same_identifier_twice(store: SqlStore, sample: Sample) -> None:
     experiment = an_experiment(sample)
     store.add(experiment)
-    with pytest.raises(ConflictError):
+    with pytest.raises(ConflictError, match="An experiment with this identifier exists already"):
         store.add(experiment)
 
 
@@ -161,7 +161,7 @@ def test_an_output_can_be_added_and_replaced(store: SqlStore, sample: Sample) ->
 def test_an_unfinished_experiment_takes_no_output(store: SqlStore, sample: Sample) -> None:
     experiment = an_experiment(sample)
     store.add(experiment)
-    with pytest.raises(ConflictError):
+    with pytest.raises(ConflictError, match="Only an experiment that succeeded has outputs"):
         store.add_output(experiment.id, an_output())
 
 
@@ -172,7 +172,7 @@ def test_listing_can_be_changed(store: SqlStore, sample: Sample) -> None:
     assert store.page(limit=5).experiments == ()
     store.set_listed(experiment.id, True)
     assert [found.id for found in store.page(limit=5).experiments] == [experiment.id]
-    with pytest.raises(NotFoundError):
+    with pytest.raises(NotFoundError, match="There is no such experiment"):
         store.set_listed("nothing", True)
 
 
@@ -182,7 +182,7 @@ def test_a_deleted_experiment_leaves_a_tombstone_and_nothing_else(store: SqlStor
     assert store.used(digests) == digests
     for _ in range(2):
         store.delete(experiment.id)
-    with pytest.raises(DeletedError):
+    with pytest.raises(DeletedError, match="This experiment was deleted by its owner"):
         store.get(experiment.id)
     assert store.used(digests) == set()
     assert store.page(limit=5).experiments == ()
@@ -195,7 +195,7 @@ def test_a_transient_experiment_leaves_no_tombstone(store: SqlStore, sample: Sam
     store.add(experiment)
     assert store.transient_before(START + timedelta(seconds=1)) == [experiment.id]
     store.delete(experiment.id)
-    with pytest.raises(NotFoundError):
+    with pytest.raises(NotFoundError, match="There is no such experiment"):
         store.get(experiment.id)
 
 
@@ -246,7 +246,7 @@ def test_pages_can_be_of_one_method(store: SqlStore, sample: Sample) -> None:
 
 @pytest.mark.parametrize("cursor", ["", "nonsense", "AAAA", "OTk5OTk5OTk5OTk5OTk5OTk5OTk5LmE", "é", "MS4A", "\ud800"])
 def test_a_cursor_of_nobody_is_refused(store: SqlStore, cursor: str) -> None:
-    with pytest.raises(InvalidInputError):
+    with pytest.raises(InvalidInputError, match="no such cursor"):
         store.page(limit=5, cursor=cursor)
 
 

@@ -177,7 +177,7 @@ def test_a_bomb_of_flat_frames_is_refused_by_its_pixels(read: Read) -> None:
 )
 def test_the_message_says_how_much_is_accepted(found: tuple[int, int, int, float], advice: str) -> None:
     limits = ClipLimits(frames=600, seconds=60, pixels=1 << 28)
-    with pytest.raises(TooLargeError) as refusal:
+    with pytest.raises(TooLargeError, match="The video has") as refusal:
         check_clip(*found, limits)
     assert "at most 600 frames, 60 seconds and 268.4 megapixels" in refusal.value.message
     assert advice in refusal.value.message

@@ -226,7 +226,7 @@ def test_a_run_that_is_cancelled_stops(stop_at):
         if fraction >= stop_at:
             raise CancelledError("Stopped.")
 
-    with pytest.raises(CancelledError):
+    with pytest.raises(CancelledError, match="Stopped"):
         pictures("rpn", crop(), width=200, height=200, progress=progress)
     assert [fraction for fraction in fractions if fraction >= stop_at] == fractions[-1:]
 

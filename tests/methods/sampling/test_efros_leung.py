@@ -29,7 +29,7 @@ def pictures(source, *, depth=8, **parameters):
 
 
 def refusal(size, **parameters):
-    with pytest.raises(InvalidInputError) as refused:
+    with pytest.raises(InvalidInputError) as refused:  # noqa: PT011 -- who calls this compares the words
         EFROS_LEUNG.resolve([size], EfrosLeungParams(**parameters))
     return refused.value
 
