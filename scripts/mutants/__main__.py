@@ -120,7 +120,7 @@ def sample(pattern: str, options: Options) -> list[Mutant]:
     paths = [path for path in listed if re.match(pattern, path) and path.endswith((".py", ".js"))]
     if pattern == GROUPS[SCRIPTS][0]:  # those that run without a browser
         tests = "".join(file.read_text(encoding="utf-8") for file in (ROOT / "tests" / "js").glob("*.test.js"))
-        paths = [path for path in paths if Path(path).name in tests]
+        paths = [path for path in paths if path in tests]
     found = [mutant for path in paths for mutant in mutants_of(ROOT, path)]
     return random.Random(options.seed).sample(found, min(options.each, len(found)))
 

@@ -209,7 +209,7 @@ def test_deleting_the_experiment_ends_its_run_at_16_bits(
         assert await asyncio.to_thread(running.wait, PATIENCE)
         await asyncio.to_thread(service.experiments.cancel_or_delete, experiment.id, OWNER)
         assert await asyncio.to_thread(stopped.wait, PATIENCE)
-        with pytest.raises(DeletedError, match="Something went wrong inside the method"):
+        with pytest.raises(DeletedError, match="This experiment was deleted by its owner"):
             await download
 
     asyncio.run(waiting())
