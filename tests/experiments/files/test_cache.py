@@ -67,7 +67,7 @@ def filled(cache: FileCache, directory: Path, *sizes: int) -> list[Path]:
     """Files of these sizes, each used a minute after the one before it, long ago."""
     paths = []
     for number, size in enumerate(sizes):
-        path = cache.get(f"{number}", lambda size=size: b"x" * size)  # type: ignore[misc] # a default binds the size
+        path = cache.get(f"{number}", lambda size=size: b"x" * size)  # a default binds the size
         os.utime(path, (1000 + 60 * number,) * 2)
         paths.append(path)
     assert all(path.parent == directory for path in paths)
