@@ -205,15 +205,15 @@ def output_size(text: str, crop: Rectangle) -> tuple[int, int]:
 
 def _cut(strip: NDArray[Any], photo: Decoded, crop: Rectangle, frames: Frames) -> NDArray[Any]:
     """Cut a crop of some frames, (T, H, W, …), out of the frames of a photograph or clip, one below the other."""
-    film = strip.reshape(photo.frames, photo.height, *strip.shape[1:])
+    video = strip.reshape(photo.frames, photo.height, *strip.shape[1:])
     rows, columns = slice(crop.y, crop.y + crop.height), slice(crop.x, crop.x + crop.width)
-    return film[frames.first : frames.first + frames.count, rows, columns]
+    return video[frames.first : frames.first + frames.count, rows, columns]
 
 
 def _source(photo: Decoded, item: ExperimentInput, *, moving: bool) -> Source:
     frames = _cut(photo.pixels, photo, item.crop, item.frames)
-    film = Clip(np.ascontiguousarray(frames), photo.rate) if moving else None
-    return Source(frames[0].astype(np.float32), 2**photo.depth - 1, film)
+    clip = Clip(np.ascontiguousarray(frames), photo.rate) if moving else None
+    return Source(frames[0].astype(np.float32), 2**photo.depth - 1, clip)
 
 
 def _holds_transparency(photo: Decoded, crop: Rectangle, frames: Frames) -> bool:

@@ -47,11 +47,11 @@ def _spectrum_bytes(shape: tuple[int, int, int], channels: int) -> int:
 def run(sources: Sequence[Source], resolved: Resolved[VideoRpnParams], context: Context) -> Iterator[Picture]:
     """The texture's files, then what was measured on the way, then the crop's."""
     source = sources[0]
-    film, rate = source.require_clip().frames, source.require_clip().rate
+    video, rate = source.require_clip().frames, source.require_clip().rate
     params, shape = resolved.params, resolved.shape
     with Team(context.threads) as team:
         field = VideoNoiseField(
-            film,
+            video,
             shape,
             seed=params.seed,
             alpha=params.alpha,
@@ -63,12 +63,12 @@ def run(sources: Sequence[Source], resolved: Resolved[VideoRpnParams], context: 
             _reported(field, context.progress),
             width=shape[2],
             height=shape[1],
-            channels=film.shape[3],
+            channels=video.shape[3],
             count=shape[0],
             rate=rate,
             context=context,
         )
-    yield from _views(film, field, context)
+    yield from _views(video, field, context)
     del field  # its spectrum, before the encoders take their memory again
     yield from encode_crop(source, context)
 
@@ -94,11 +94,11 @@ def _reported(field: VideoNoiseField, progress: Progress) -> Iterator[Real]:
         yield frame
 
 
-def _views(film: Bytes, field: VideoNoiseField, context: Context) -> Iterator[Picture]:
+def _views(video: Bytes, field: VideoNoiseField, context: Context) -> Iterator[Picture]:
     """The average frame, and two sections through the block of the squared moduli."""
     context.progress("spectrum", 0)
     still = Fact("still", "Part of the texture's contrast that stands still", 100 * field.still, "% of the variance")
-    average = film.mean(axis=0, dtype=np.float64).astype(np.float32)
+    average = video.mean(axis=0, dtype=np.float64).astype(np.float32)
     yield encode("average", "Average frame of the crop", average, 255, context, facts=(still,))
     _, _, width = field.shape
     yield log_modulus("spectrum", "Log-modulus over space, all times together", field.power, width, context)

@@ -91,40 +91,40 @@ def memory(sizes: Sequence[Size], resolved: Resolved[VideoPatchworkParams]) -> i
 def run(sources: Sequence[Source], resolved: Resolved[VideoPatchworkParams], context: Context) -> Iterator[Picture]:
     """The video texture, its cells over time, the average image, and the crop."""
     (source,) = sources
-    params, film, shape = resolved.params, source.require_clip().frames, resolved.shape
+    params, video, shape = resolved.params, source.require_clip().frames, resolved.shape
     context.progress("cells", 0)
-    frame, painter = (_mosaic if params.arrangement == "mosaic" else _fixed)(film, shape, params)
+    frame, painter = (_mosaic if params.arrangement == "mosaic" else _fixed)(video, shape, params)
     yield from textured(frame, shape, source, context)
     yield cells_cube(painter, shape, context)
-    yield average_picture(film.mean(0, np.float32), context)
+    yield average_picture(video.mean(0, np.float32), context)
     yield from encode_crop(source, context)
 
 
 def _fixed(
-    film: Bytes, shape: tuple[int, int, int], params: VideoPatchworkParams
+    video: Bytes, shape: tuple[int, int, int], params: VideoPatchworkParams
 ) -> tuple[Callable[[int], Real], Painter]:
     """The two-stage synthesis: what makes a frame, and what paints its cells."""
     frames, height, width = shape
     cells = jittered_cells(
         height, width, grid=params.grid, sharpness=params.sharpness, tileable=params.tileable, seed=params.seed
     )
-    sources = cells.sources(film.shape[1], film.shape[2], params.seed)
+    sources = cells.sources(video.shape[1], video.shape[2], params.seed)
     cells = cells_with_reach(cells, params.reach, tileable=params.tileable)
     transitions = Transitions(
-        cells.count, len(film), frames, params.interval, loop=params.loop, rng=random_numbers(params.seed, IN_TIME)
+        cells.count, len(video), frames, params.interval, loop=params.loop, rng=random_numbers(params.seed, IN_TIME)
     )
-    clip = PaddedClip(film, cells.margin(sources, film.shape[1], film.shape[2]))
-    mean = film.mean((0, 1, 2), np.float64).astype(np.float32)
+    clip = PaddedClip(video, cells.margin(sources, video.shape[1], video.shape[2]))
+    mean = video.mean((0, 1, 2), np.float64).astype(np.float32)
     made = VideoPatchwork(clip, cells, sources, transitions, np.tile(mean, (cells.count, 1)))
-    return made.frame, lambda window: FixedCells(cells, window, sources, transitions, film.shape[:3]).paint
+    return made.frame, lambda window: FixedCells(cells, window, sources, transitions, video.shape[:3]).paint
 
 
 def _mosaic(
-    film: Bytes, shape: tuple[int, int, int], params: VideoPatchworkParams
+    video: Bytes, shape: tuple[int, int, int], params: VideoPatchworkParams
 ) -> tuple[Callable[[int], Real], Painter]:
     """The three-dimensional mosaic: what makes a frame, and what paints its cells."""
     mosaic = VideoMosaic(
-        PaddedClip(film).planes,
+        PaddedClip(video).planes,
         shape,
         grid=params.grid,
         interval=params.interval,
@@ -134,7 +134,7 @@ def _mosaic(
         rng=random_numbers(params.seed, IN_TIME),
         reach=params.reach,
     )
-    colours = source_colours(mosaic.sources, film.shape[:3])
+    colours = source_colours(mosaic.sources, video.shape[:3])
     return mosaic.frame, lambda window: lambda number: mosaic.paint(number, window, colours)
 
 

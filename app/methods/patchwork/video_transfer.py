@@ -90,23 +90,23 @@ def memory(sizes: Sequence[Size], resolved: Resolved[VideoTransferParams]) -> in
 def run(sources: Sequence[Source], resolved: Resolved[VideoTransferParams], context: Context) -> Iterator[Picture]:
     """The pattern as a video texture, its cells over time, the average image, the clip and the pattern."""
     clip, pattern = sources
-    params, film, shape = resolved.params, clip.require_clip().frames, resolved.shape
+    params, video, shape = resolved.params, clip.require_clip().frames, resolved.shape
     context.progress("cells", 0)
     cells = jittered_cells(*shape[1:], grid=params.grid, sharpness=params.sharpness, tileable=False, seed=params.seed)
-    average = film.mean(0, np.float32)
+    average = video.mean(0, np.float32)
     target = _with_channels(pattern.pixels * np.float32(PEAK / pattern.peak), average.shape[2])
     if params.rescale:
         target = rescale(target, average)
     places = _matched(average, target, cells, params, context)
     transitions = Transitions(
-        cells.count, len(film), shape[0], params.interval, loop=params.loop, rng=random_numbers(params.seed, IN_TIME)
+        cells.count, len(video), shape[0], params.interval, loop=params.loop, rng=random_numbers(params.seed, IN_TIME)
     )
     cells = cells_with_reach(cells, params.reach, tileable=False)
-    margin = cells.margin(places, *film.shape[1:3])
-    made = VideoPatchwork(PaddedClip(film, margin), cells, places, transitions)
+    margin = cells.margin(places, *video.shape[1:3])
+    made = VideoPatchwork(PaddedClip(video, margin), cells, places, transitions)
     yield from textured(made.frame, shape, clip, context)
     yield cells_cube(
-        lambda window: FixedCells(cells, window, places, transitions, film.shape[:3]).paint,
+        lambda window: FixedCells(cells, window, places, transitions, video.shape[:3]).paint,
         shape,
         context,
     )
