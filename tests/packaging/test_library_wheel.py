@@ -155,7 +155,7 @@ def test_the_examples_of_the_documents_run_there_and_give_the_texture_of_the_ser
 
 def test_a_type_checker_reads_the_types_of_the_installed_library(library: Environment) -> None:
     program = library.work / "program.py"
-    program.write_text("from microtexture.structure import too_small\nreveal_type(too_small)\n")
+    program.write_text("from microtexture.structure import is_too_small\nreveal_type(is_too_small)\n")
     command = [sys.executable, "-m", "mypy", "--config-file=", "--follow-imports=silent", "--python-executable"]
     done = subprocess.run(
         [*command, library.programs / "python", program.name],
