@@ -36,14 +36,17 @@ fix: $(VENV)/.ready-dev node_modules/.ready ## mend what ruff and eslint can men
 	$(BIN)/node node_modules/eslint/bin/eslint.js --fix static/js tests/js
 	$(BIN)/node node_modules/prettier/bin/prettier.cjs --write --log-level warn $(SCRIPTS)
 
+# The drivers of browsers, and what is killed on purpose, leave sockets and processes to the garbage collector.
+LEFT_OPEN = -W default::ResourceWarning -W default::pytest.PytestUnraisableExceptionWarning
+
 # What kills processes has the machine to itself.
 test: $(if $T,$(VENV)/.ready-dev,lint test-js programs) ## all that CI runs, or T=tests/web/test_press.py, a directory or one test
 ifdef T
 	$(WITH_BROWSER) $(BIN)/pytest $T
 else
 	$(WITH_BROWSER) $(BIN)/pytest -n 2 --dist loadfile -m 'not (acceptance or chaos or load)'
-	$(WITH_BROWSER) $(BIN)/pytest -n 2 --dist loadfile -m 'acceptance and not (chaos or load)' tests
-	$(WITH_BROWSER) $(BIN)/pytest -m 'chaos and not load' tests
+	$(WITH_BROWSER) $(BIN)/pytest $(LEFT_OPEN) -n 2 --dist loadfile -m 'acceptance and not (chaos or load)' tests
+	$(WITH_BROWSER) $(BIN)/pytest $(LEFT_OPEN) -m 'chaos and not load' tests
 endif
 
 test-313: ## the tests without a browser on Python 3.13, or on the one that PYTHON_313 names, in an environment of their own
@@ -51,7 +54,7 @@ test-313: ## the tests without a browser on Python 3.13, or on the one that PYTH
 
 test-without-browser: programs
 	$(BIN)/pytest -n 2 --dist loadfile -m 'not (acceptance or chaos or load)'
-	$(BIN)/pytest -m 'chaos and not (acceptance or load)' tests
+	$(BIN)/pytest $(LEFT_OPEN) -m 'chaos and not (acceptance or load)' tests
 
 test-fast: $(VENV)/.ready-dev
 	$(BIN)/pytest -q -n 2 --dist loadfile --hypothesis-profile=quick --testmon --testmon-forceselect -m 'not (slow or acceptance or chaos or load)'
@@ -88,10 +91,10 @@ new-method: $(VENV)/.ready-dev ## the files of a new method to start from: NAME=
 	@$(BIN)/python scripts/new_method.py "$(NAME)" --family "$(FAMILY)"
 
 chaos: programs ## only the tests that kill processes
-	$(BIN)/pytest -m chaos
+	$(BIN)/pytest $(LEFT_OPEN) -m chaos
 
 load: $(VENV)/.ready-dev ## only the tests that send sustained load
-	$(BIN)/pytest -m load
+	$(BIN)/pytest $(LEFT_OPEN) -m load
 
 bench: $(VENV)/.ready-dev ## measure kernels and service on this machine and print one table
 	$(BIN)/python -m benchmarks
