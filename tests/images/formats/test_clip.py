@@ -8,7 +8,7 @@ import pytest
 
 from app.errors import BrokenFileError, TooLargeError
 from app.images.decode import Decoded
-from app.images.formats.clip import ClipLimits, check_clip
+from app.images.formats.clip import ClipLimits, TimedFrame, check_clip, limit_clip
 from tests.images.clips import VideoArray, animation, chunk, lossless, moving, video
 
 Read = Callable[..., Decoded]
@@ -188,3 +188,15 @@ def test_what_the_message_advises_is_accepted() -> None:
     check_clip(1920, 1080, 129, 4.3, limits)
     check_clip(891, 501, 600, 20.0, limits)
     check_clip(1544, 868, 200, 8.0, limits)
+
+
+def test_a_clip_plays_from_its_first_frame_on() -> None:
+    """Its clock may start anywhere: only what lies between the frames counts."""
+    picture = np.zeros((4, 5, 3), np.uint8)
+    frames = [TimedFrame(picture, 1000.0 + seconds) for seconds in (0.0, 1.0, 2.0, 2.5)]
+    limits = ClipLimits(frames=4, seconds=2, pixels=1000)
+    assert list(limit_clip(iter(frames[:3]), limits)) == frames[:3]
+    passed = limit_clip(iter(frames), limits)
+    assert [next(passed).seconds for _ in range(3)] == [1000.0, 1001.0, 1002.0]
+    with pytest.raises(TooLargeError, match="at least 4 frames"):
+        next(passed)
