@@ -31,6 +31,9 @@ def child(command: Sequence[str], log: Path, **options: Any) -> Iterator[subproc
                 first = psutil.Process(process.pid)
                 end([first, *first.children(recursive=True)])
             process.wait()
+            for pipe in (process.stdin, process.stdout):
+                if pipe is not None:
+                    pipe.close()
 
 
 def end(family: Sequence[psutil.Process]) -> None:
