@@ -109,3 +109,35 @@ def test_what_goes_wrong_in_a_thread_ends_the_storing(
     with pytest.raises(ZeroDivisionError):
         store(tmp_path / "upload", tmp_path / "stack.png", Limits())
     assert not (tmp_path / "stack.png").exists()
+
+
+def test_only_a_few_frames_are_in_memory_at_a_time(
+    tmp_path: Path, noise: Noise, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A frame is decoded only once the writing of an earlier one was waited for."""
+    frames, taken, written = noise(40, 8, 8, 3), [], []
+
+    class Lazy(Future[None]):
+        """What is submitted is done when somebody waits for it, and not before."""
+
+        def __init__(self, work: Callable[[], None]) -> None:
+            super().__init__()
+            self._work = work
+
+        def result(self, timeout: float | None = None) -> None:
+            self._work()
+            written.append(1)
+
+    class Pool(ThreadPoolExecutor):
+        def submit(self, function: Any, *args: Any, **kwargs: Any) -> Future[Any]:
+            return Lazy(lambda: function(*args, **kwargs))
+
+    def yielding() -> Iterator[TimedFrame]:
+        for index, frame in enumerate(frames):
+            taken.append(index)
+            assert len(taken) - len(written) <= module.WAITING + 1
+            yield TimedFrame(frame, index / 8)
+
+    monkeypatch.setattr(module, "ThreadPoolExecutor", Pool)
+    monkeypatch.setattr(module, "read", lambda path, limits: ClipStream(8, 8, 3, "video/mp4", yielding()))
+    assert store(tmp_path / "upload", tmp_path / "stack.png", Limits()).frames == len(written) == 40
