@@ -129,7 +129,7 @@ def test_only_a_few_frames_are_in_memory_at_a_time(
             written.append(1)
 
     class Pool(ThreadPoolExecutor):
-        def submit(self, function: Any, *args: Any, **kwargs: Any) -> Future[Any]:
+        def submit(self, function: Any, /, *args: Any, **kwargs: Any) -> Future[Any]:
             return Lazy(lambda: function(*args, **kwargs))
 
     def yielding() -> Iterator[TimedFrame]:
