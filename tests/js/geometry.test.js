@@ -101,6 +101,16 @@ test("however far they are thrown, the largest picture reaches the middle of the
   );
 });
 
+test("a pan stops where the border of the largest picture, in all its tiles, is in the middle of the stage", () => {
+  const pictures = [
+    { width: 100, height: 300 },
+    { width: 200, height: 50 },
+  ];
+  const far = 1e6;
+  assert.deepEqual(pan({ scale: 2, x: 0, y: 0 }, far, far, pictures, 3), { scale: 2, x: -300, y: -450 });
+  assert.deepEqual(pan({ scale: 2, x: 0, y: 0 }, -far, -far, pictures, 3), { scale: 2, x: 300, y: 450 });
+});
+
 test("pictures lie by their centres, at whole pixels of the screen", () => {
   fc.assert(
     fc.property(size, room, view, tiles, fc.constantFrom(1, 1.5, 2), (picture, stage, at, count, ratio) => {
