@@ -32,7 +32,7 @@ def test_a_gif_of_one_picture_becomes_a_still(site):
 @pytest.mark.parametrize(
     ("data", "status", "words"),
     [
-        (video(moving(2), "mpeg4"), 415, "save it as MP4 with H.264"),
+        (video(moving(2), "mpeg4"), 415, "Save this video as MP4 with H.264"),
         (video(FILM)[:-100], 422, "damaged or incomplete"),
         (animation(FILM, "GIF")[:-50], 422, "damaged or incomplete"),
         (video(moving(601, 16, 16), options={"preset": "ultrafast"}), 413, "at most 600 frames"),
