@@ -12,7 +12,7 @@ from PIL import Image
 
 from app.images.png_writer import encode_png
 from app.methods.registry import METHODS
-from tests.test_cli import CHINA, SAND, WATER, microtexture, pixels, synthesize
+from tests.command_line import CHINA, SAND, WATER, microtexture, pixels, synthesize
 
 CROP = ("--crop", "0,0,40,30")
 

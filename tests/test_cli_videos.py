@@ -7,7 +7,7 @@ import pytest
 
 from app.images.video.reader import read_video
 from app.images.video.writers import write_video
-from tests.test_cli import CHINA, synthesize
+from tests.command_line import CHINA, synthesize
 
 
 @pytest.fixture

@@ -1,86 +1,25 @@
-"""A clip on its page: uploaded, played, cropped in space and time by pointer, keyboard and plain form, and run."""
+"""A clip on its page: uploaded, cropped in space and time by pointer, keyboard and on a phone, and run."""
 
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import av
-import numpy as np
 import pytest
-from playwright.sync_api import Page, Route, expect
+from playwright.sync_api import Route, expect
 
-from app.methods.registry import METHODS
-
-SIDES = ("x", "y", "width", "height")
-MOVING = next(name for name, method in METHODS.items() if method.inputs[0].moving)
-WIDTH, HEIGHT, FRAMES, RATE = 161, 120, 24, 12
-
-
-@pytest.fixture(scope="module")
-def clip(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """What a visitor uploads: waves that move, 161 × 120 pixels, two seconds, as MP4 of every colour's own place."""
-    path = tmp_path_factory.mktemp("clip") / "waves.mp4"
-    t, y, x = np.mgrid[0:FRAMES, 0:HEIGHT, 0:WIDTH]
-    waves = [128 + 80 * np.sin(x / (7 + i) + y / (11 - i) + 2 * np.pi * t * (i + 1) / FRAMES) for i in range(3)]
-    with av.open(path, "w") as file:
-        track = file.add_stream("libx264", rate=RATE)
-        track.width, track.height, track.pix_fmt = WIDTH, HEIGHT, "yuv444p"
-        for frame in np.stack(waves, axis=-1).astype(np.uint8):
-            file.mux(track.encode(av.VideoFrame.from_ndarray(frame, "rgb24")))
-        file.mux(track.encode(None))
-    return path
-
-
-@pytest.fixture(scope="module")
-def uploaded(site: Any, clip: Path) -> str:
-    """The address of that clip's page."""
-    answer = site.client.post("/api/v1/samples", files={"file": clip.open("rb")})
-    assert answer.status_code == 201, answer.text
-    return f"/samples/{answer.json()['id']}"
-
-
-def crop_of(page: Page) -> list[int]:
-    return [int(page.input_value(f"#crop-{side}")) for side in SIDES]
-
-
-def time_of(page: Page) -> list[int]:
-    return [int(page.input_value(f"#time-{part}")) for part in ("first", "count")]
-
-
-def record_of(site: Any, page: Page) -> dict[str, Any]:
-    page.wait_for_url("**/experiments/*")
-    return dict(site.client.get("/api/v1/experiments/" + page.url.rsplit("/", 1)[-1]).json())
-
-
-def shows(page: Page, frame: int) -> None:
-    """Wait until the video has stopped at a frame."""
-    page.wait_for_function(
-        """([frame, rate]) => {
-            const video = document.querySelector("#frame video");
-            const at = Math.floor(video.currentTime * rate);
-            return video.paused && !video.seeking && video.readyState >= 2 && at === frame;
-        }""",
-        arg=[frame, RATE],
-    )
-
-
-def drag(page: Page, start: float, end: float) -> None:
-    """Drag on the reel, from and to places between frames."""
-    bounds = page.locator("#crop .track").bounding_box()
-    assert bounds is not None
-    across, y = bounds["width"] / FRAMES, bounds["y"] + bounds["height"] / 2
-    page.mouse.move(bounds["x"] + start * across, y)
-    page.mouse.down()
-    page.mouse.move(bounds["x"] + end * across, y, steps=4)
-    page.mouse.up()
-
-
-def tab_to(page: Page, selector: str, key: str = "Tab") -> None:
-    for _ in range(80):
-        page.keyboard.press(key)
-        if page.evaluate("selector => document.activeElement.matches(selector)", selector):
-            return
-    raise AssertionError(f"{key} does not lead to {selector}")
+from tests.acceptance.clips.page import (
+    FRAMES,
+    HEIGHT,
+    MOVING,
+    SIDES,
+    WIDTH,
+    crop_of,
+    drag,
+    record_of,
+    shows,
+    tab_to,
+    time_of,
+)
 
 
 def test_upload_crop_in_space_and_time_and_run(
@@ -146,53 +85,6 @@ def test_the_whole_way_by_keyboard(visitors: Any, site: Any, uploaded: str) -> N
     assert record_of(site, page)["inputs"][0]["frames"] == {"first": 1, "count": 11}
 
 
-def test_the_reel_says_what_it_holds(visitors: Any, uploaded: str) -> None:
-    """To who looks and to who listens."""
-    page = visitors.visit(f"{uploaded}?time=6,9")
-    expect(page.locator("#crop .reel output")).to_have_text("6–14 of 24 frames, 0.75 s")
-    ends = page.locator("#crop").get_by_role("slider")
-    said = ends.evaluate_all("all => all.map((each) => [each.ariaLabel, each.ariaValueNow, each.ariaValueText])")
-    assert said == [
-        ["Time range", "6", "6, at 0.50 s"],
-        ["First frame", "6", "6, at 0.50 s"],
-        ["Last frame", "14", "14, at 1.17 s"],
-    ]
-
-
-def test_only_the_chosen_range_plays(visitors: Any, uploaded: str) -> None:
-    """Over and over: one frame of slack, for the browser looks for the next one while the last is shown."""
-    page = visitors.visit(f"{uploaded}?time=8,6")
-    seen = page.evaluate(
-        """rate => new Promise((done) => {
-            const video = document.querySelector("#frame video");
-            const seen = [];
-            let rounds = 0;
-            const look = (now, { mediaTime }) => {
-                const frame = Math.round(mediaTime * rate);
-                if (seen.length && frame < seen.at(-1)) rounds += 1;
-                seen.push(frame);
-                if (rounds < 3) video.requestVideoFrameCallback(look);
-                else done(seen);
-            };
-            video.requestVideoFrameCallback(look);
-        })""",
-        RATE,
-    )
-    begun = seen[seen.index(8) :]
-    assert min(begun) == 8
-    assert max(begun) <= 14
-    assert len(begun) > 6
-
-
-def test_nothing_moves_by_itself_where_that_is_asked_for(visitors: Any, uploaded: str) -> None:
-    page = visitors.visit(f"{uploaded}?time=5,12", reduced_motion="reduce")
-    shows(page, 5)
-    page.get_by_role("button", name="Play").click()
-    page.wait_for_function("!document.querySelector('#frame video').paused")
-    page.get_by_role("button", name="Pause").click()
-    page.wait_for_function("document.querySelector('#frame video').paused")
-
-
 def test_a_still_method_takes_one_frame(
     visitors: Any, site: Any, uploaded: str, screenshot: Callable[..., None]
 ) -> None:
@@ -223,62 +115,6 @@ def test_the_meter_measures_the_frame_that_is_shown(visitors: Any, uploaded: str
         drag(page, 7.5, 15.5)
     with page.expect_request("**/structure?*frame=16"):
         page.locator("#crop .track [data-part=first]").press("ArrowRight")
-
-
-@pytest.mark.parametrize(
-    ("part", "typed", "time", "words"),
-    [
-        ("first", "20", [12, 12], "It begins with frame 12 now: from 20 on, 12 frames do not fit."),
-        ("first", "99", [12, 12], "It begins with frame 12 now"),
-        ("count", "20", [4, 20], "It begins with frame 4 now: from 6 on, 20 frames do not fit."),
-        ("count", "99", [0, 24], "It is 24 frames now: the clip has no more."),
-        ("count", "1", [6, 2], "A video has 2 frames or more."),
-    ],
-)
-def test_a_number_that_does_not_fit_moves_the_range_and_keeps_its_length(
-    visitors: Any, uploaded: str, part: str, typed: str, time: list[int], words: str
-) -> None:
-    """Once its field is left; until then the reel stays where it fitted last."""
-    page = visitors.visit(f"{uploaded}?time=6,12")
-    expect(page.locator("#crop .reel output")).to_contain_text("6–17 of 24")
-    page.locator(f"#time-{part}").click()
-    page.keyboard.press("ControlOrMeta+a")
-    page.keyboard.type(typed)
-    assert page.input_value(f"#time-{part}") == typed
-    page.keyboard.press("Tab")
-    assert time_of(page) == time
-    expect(page.locator("#crop .reel output")).to_contain_text(f"{time[0]}–{sum(time) - 1} of 24")
-    expect(page.locator("#crop [data-fit=time]")).to_contain_text(words)
-
-
-def test_two_numbers_typed_one_after_the_other_are_the_range(visitors: Any, uploaded: str) -> None:
-    """Although the first one does not fit until the second is typed; what is no whole number is named."""
-    page = visitors.visit(uploaded)
-    page.locator("#time-first").click()
-    for number in ("15", "7"):
-        page.keyboard.press("ControlOrMeta+a")
-        page.keyboard.type(number)
-        page.keyboard.press("Tab")
-    assert time_of(page) == [15, 7]
-    page.locator("#time-first").fill("3,5")
-    page.keyboard.press("Tab")
-    expect(page.locator("#time-error")).to_contain_text('got "3,5" for the first frame')
-    expect(page.locator("#time-first")).to_have_value("3,5")
-    expect(page.locator("#crop .reel output")).to_contain_text("15–21 of 24")
-
-
-def test_back_finds_the_time_range(visitors: Any, uploaded: str) -> None:
-    page = visitors.visit(uploaded)
-    drag(page, 0, 5)
-    page.fill("#frames", "30")
-    page.get_by_role("button", name="Synthesise").click()
-    page.wait_for_url("**/experiments/*")
-    page.go_back()
-    for _ in range(2):
-        expect(page.locator("#time-first")).to_have_value("5")
-        assert time_of(page) == [5, 19]
-        expect(page.locator("#frames")).to_have_value("30")
-        page.goto(page.url)
 
 
 def test_a_file_that_is_no_video_is_refused_where_it_was_chosen(visitors: Any, tmp_path: Path) -> None:
@@ -317,16 +153,6 @@ def test_a_clip_as_another_input(visitors: Any, site: Any, uploaded: str) -> Non
     expect(page.locator("#input-2 .reel output")).to_contain_text("frame 4 of 24")
     page.get_by_role("button", name="Synthesise").click()
     assert [each["frames"]["first"] for each in record_of(site, page)["inputs"]] == [0, 4]
-
-
-def test_the_time_range_without_a_script(visitors: Any, site: Any, uploaded: str) -> None:
-    """The browser's own player, and two numbers."""
-    page = visitors.visit(uploaded, java_script_enabled=False)
-    expect(page.locator("#frame video")).to_have_attribute("controls", "")
-    page.fill("#time-first", "3")
-    page.fill("#time-count", "8")
-    page.get_by_role("button", name="Synthesise").click()
-    assert record_of(site, page)["inputs"][0]["frames"] == {"first": 3, "count": 8}
 
 
 def test_a_clip_on_a_phone(visitors: Any, uploaded: str, screenshot: Callable[..., None]) -> None:
