@@ -152,7 +152,7 @@ for module in {SYNTHESIS!r}:
     assert done.stdout.split() == SYNTHESIS, done.stderr
 
 
-@pytest.mark.parametrize("directory", ["app", "static", "templates", "scripts", "benchmarks"])
+@pytest.mark.parametrize("directory", ["app", "static", "templates", "scripts", "benchmarks", "tests"])
 def test_no_file_has_more_than_300_lines(directory: str) -> None:
     files = (path for path in (ROOT / directory).rglob("*") if path.suffix in {".py", ".js", ".css", ".html"})
     assert {path.name: lines for path in files if (lines := len(path.read_text("utf-8").splitlines())) > 300} == {}
