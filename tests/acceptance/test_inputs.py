@@ -230,7 +230,7 @@ def test_a_method_finds_the_size_of_its_own_texture(visitors: Any, site: Any) ->
     page.select_option("#size", "2")
     expect(page.locator("#width")).to_have_value("400")
     page.get_by_role("button", name="Synthesise").click()
-    expect(page.locator("#width-error")).to_contain_text("at most that of the smaller crop, 120 pixels")
+    expect(page.locator("#width-error")).to_contain_text("Choose a width of at most 120 pixels instead of 400")
     page.select_option("#size", "1")
     run(page)
     assert [record_of(site, page)["parameters"][side] for side in ("width", "height")] == [120, 100]

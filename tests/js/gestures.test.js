@@ -65,6 +65,31 @@ for (const [pointerType, slop] of /** @type {const} */ ([
   });
 }
 
+test("a press is under way from before its drag begins until it ends, for what the focus moves then", () => {
+  const frame = /** @type {HTMLElement} */ (/** @type {unknown} */ (new Frame()));
+  /** @type {boolean[]} */
+  const pressed = [];
+  const ignore = () => {};
+  const gestures = new Gestures(frame, {
+    kind: () => "draw",
+    begin: () => pressed.push(gestures.pressed),
+    pull: ignore,
+    end: ignore,
+    cancel: ignore,
+    grip: ignore,
+    zoom: ignore,
+    settle: ignore,
+  });
+  for (const last of ["pointerup", "pointercancel"]) {
+    for (const type of ["pointerdown", last]) {
+      const place = { clientX: 5, clientY: 5, pointerId: 1, button: 0, pointerType: "mouse" };
+      frame.dispatchEvent(Object.assign(new Event(type, { cancelable: true }), place));
+    }
+    pressed.push(gestures.pressed);
+  }
+  assert.deepEqual(pressed, [true, false, true, false]);
+});
+
 test("fingers that part enlarge, about the place between them, and take back what the first one had begun", () => {
   const send = open();
   const [first, second] = [{ pointerType: "touch" }, { pointerType: "touch", pointerId: 2 }];

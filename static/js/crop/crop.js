@@ -184,7 +184,7 @@ export class Crop {
     const { box, tools, view } = this;
     box.element.addEventListener("keydown", (event) => this.key(event));
     box.element.addEventListener("focus", () => {
-      if (!view.zoom.zoomed || this.gestures.drag) return;
+      if (!view.zoom.zoomed || this.gestures.pressed) return;
       view.zoom.reveal(this.shown);
       this.draw();
     });

@@ -45,6 +45,7 @@ export class Gestures {
   constructor(frame, on) {
     this.frame = frame;
     this.on = on;
+    this.pressed = false; // whether a drag begins or goes on
     /** @type {Drag<Start> | null} */
     this.drag = null;
     /** @type {{ grip: Grip, distance: number } | null} */
@@ -102,6 +103,7 @@ export class Gestures {
     this.frame.setPointerCapture(event.pointerId);
     const edge = (event.target instanceof HTMLElement && event.target.dataset.edge) || "";
     const slop = finger ? SLOP.touch : SLOP.mouse;
+    this.pressed = true; // before the drag begins, which moves the focus
     this.drag = { kind, edge, id: event.pointerId, screen: at, slop, under: false, start: this.on.begin(kind, at) };
   }
 
@@ -127,7 +129,7 @@ export class Gestures {
     this.fingers.delete(event.pointerId);
     if (this.drag?.id === event.pointerId) {
       finish(this.drag);
-      this.drag = null;
+      this.release();
     }
     if (!this.pinch || this.fingers.size) return;
     this.pinch = null;
@@ -137,6 +139,11 @@ export class Gestures {
   /** Take back the drag that is under way. */
   cancel() {
     if (this.drag) this.on.cancel(this.drag);
+    this.release();
+  }
+
+  release() {
+    this.pressed = false;
     this.drag = null;
   }
 }

@@ -93,7 +93,7 @@ def test_a_still_method_takes_one_frame(
     page.get_by_text("RPN", exact=True).click()
     expect(page.locator("#crop").get_by_role("spinbutton", name="frame", exact=True)).to_have_value("0")
     expect(page.locator("#time-count")).to_be_hidden()
-    expect(page.locator("#time-help").get_by_text("This method takes a still picture")).to_be_visible()
+    expect(page.locator("#time-help").get_by_text("This method takes a single frame")).to_be_visible()
     page.fill("#time-first", "7")
     shows(page, 7)
     screenshot(page, "sample-clip-frame")
