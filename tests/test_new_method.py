@@ -13,7 +13,7 @@ from app.settings import ROOT
 
 pytestmark = pytest.mark.slow
 
-COPIED = ("app", "tests", "benchmarks", "scripts", "docs", "templates", "static", "samples")
+COPIED = ("app", "tests", "benchmarks", "scripts", "docs", "lint", "templates", "static", "samples")
 NAME, MODULE, FAMILY = "half-tone", "half_tone", "sampling"
 MADE = {
     f"app/synthesis/{FAMILY}/{MODULE}.py",

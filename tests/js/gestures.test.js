@@ -70,6 +70,7 @@ test("a press is under way from before its drag begins until it ends, for what t
   /** @type {boolean[]} */
   const pressed = [];
   const ignore = () => {};
+  /** @type {Gestures<number, void>} */
   const gestures = new Gestures(frame, {
     kind: () => "draw",
     begin: () => pressed.push(gestures.pressed),
