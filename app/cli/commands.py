@@ -138,7 +138,7 @@ def catalogue(
     from app.main import build_service
     from app.methods.explanations.model import Exhibit
 
-    def told(number: int, of: int, exhibit: Exhibit, error: str | None) -> None:
+    def report(number: int, of: int, exhibit: Exhibit, error: str | None) -> None:
         samples = " and ".join(sample for sample, _ in exhibit.inputs)
         typer.echo(f"{number}/{of} {exhibit.method} of {samples}{f': {error}' if error else ''}", err=True)
 
@@ -147,7 +147,7 @@ def catalogue(
         service = build_service(settings)
         try:
             service.start()
-            filled = service.exhibition.fill(Event(), again=again, at_once=settings.workers, on_done=told)
+            filled = service.exhibition.fill(Event(), again=again, at_once=settings.workers, on_done=report)
         finally:
             service.close()
     typer.echo(f"Made {filled.made} figures, {filled.failed} failed, {filled.kept} were there already.")

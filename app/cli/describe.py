@@ -20,9 +20,9 @@ def describe(method: Method, console: Console) -> None:
     table = _table("output", "kind", "type", "given", "changed by")
     own = [name for name in method.params.model_fields if name not in MovingParams.model_fields]
     for output in method.outputs:
-        given = f"where {output.condition}" if output.condition else "always"
+        when = f"where {output.condition}" if output.condition else "always"
         changes = ", ".join(name for name in own if output.changed_by(name))
-        table.add_row(output.name, output.kind, output.media_type, given, changes or "–")
+        table.add_row(output.name, output.kind, output.media_type, when, changes or "–")
     console.print(table)
 
 

@@ -159,9 +159,9 @@ def _read(path: Path, settings: Settings) -> Decoded:
 
 def _experiment(request: Request, answer: Answer, photos: Mapping[str, Decoded], settings: Settings) -> Experiment:
     """Validate what was typed, as the service does."""
-    for given, what in ((request.crop, "crops"), (request.time, "time ranges")):
-        if len(given) > len(request.photos):
-            raise InvalidInputError(f"There are more {what} ({len(given)}) than files ({len(request.photos)}).")
+    for listed, what in ((request.crop, "crops"), (request.time, "time ranges")):
+        if len(listed) > len(request.photos):
+            raise InvalidInputError(f"There are more {what} ({len(listed)}) than files ({len(request.photos)}).")
     crops = [Rectangle.parse(text) for text in request.crop]
     times = [Frames.parse(text) for text in request.time]
     inputs = tuple(NewInput(str(path), crop, part) for path, crop, part in zip_longest(request.photos, crops, times))

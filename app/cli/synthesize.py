@@ -103,10 +103,10 @@ def command() -> Callable[..., None]:
     def synthesize(files: list[Path], **options: Any) -> None:
         with plain_errors():
             own = {name: options.pop(name) for name in _OWN if name != "files"}
-            given = {name: value for name, value in options.items() if value is not None}
+            parameters = {name: value for name, value in options.items() if value is not None}
             everything = own["directory"] is not None
             photos, out = (files, None) if everything else (files[:-1], files[-1])
-            request = Request(photos=tuple(photos), out=out, parameters=given, **own)
+            request = Request(photos=tuple(photos), out=out, parameters=parameters, **own)
             with Bar() as progress:
                 done = run(request, read_settings(), progress)
         typer.echo(done)

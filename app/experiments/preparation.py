@@ -89,10 +89,10 @@ def prepare(
     _check_count(method, len(request.inputs))
     inputs, sizes = [], []
     depths = {8}
-    for index, wanted_input in enumerate(request.inputs):
-        found = sample(wanted_input.sample)
-        frames = _frames(wanted_input, found, method.slot(index), f"inputs.{index}")
-        crop = _crop(wanted_input, found, frames, f"inputs.{index}.crop", transparent)
+    for index, new in enumerate(request.inputs):
+        found = sample(new.sample)
+        frames = _frames(new, found, method.slot(index), f"inputs.{index}")
+        crop = _crop(new, found, frames, f"inputs.{index}.crop", transparent)
         inputs.append(ExperimentInput(found.id, crop, frames))
         depths.add(found.depth)
         sizes.append(Size(crop.width, crop.height, found.channels, frames.count))
@@ -129,32 +129,32 @@ def _check_count(method: Method, count: int) -> None:
     least, most = len(method.inputs), len(method.inputs) + method.more
     if least <= count <= most:
         return
-    wanted = str(least) if least == most else f"{least} to {most}"
+    number = str(least) if least == most else f"{least} to {most}"
     names = ", ".join(slot.name for slot in method.inputs)
     noun = "input" if most == 1 else "inputs"
-    raise InvalidInputError(f"The method {method.name} takes {wanted} {noun} ({names}), not {count}.", "inputs")
+    raise InvalidInputError(f"The method {method.name} takes {number} {noun} ({names}), not {count}.", "inputs")
 
 
 def _check_answer(method: Method, sizes: list[Size], params: StillParams, request: NewExperiment, deepest: int) -> None:
     assert request.answer is not None
-    wanted = [output.name for output in outputs_of(method, params, len(sizes))]
+    outputs = [output.name for output in outputs_of(method, params, len(sizes))]
     if request.answer.output is not None:
         output = output_named(method, request.answer.output, params, len(sizes))
-        wanted = [output.name]
+        outputs = [output.name]
         if request.answer.depth == 16:
             refuse_deep(output, deepest)
-    for name, words in without_effect(method, sizes, params, request.parameters.keys(), wanted).items():
+    for name, words in without_effect(method, sizes, params, request.parameters.keys(), outputs).items():
         raise InvalidInputError(words, f"parameters.{name}")
 
 
-def _frames(wanted: NewInput, sample: Sample, slot: Slot, field: str) -> Frames:
+def _frames(new: NewInput, sample: Sample, slot: Slot, field: str) -> Frames:
     if slot.moving and not sample.moving:
         raise InvalidInputError(
             f"The input “{slot.name}” of this method is a video, and this sample is a still picture: upload an MP4, "
             "WebM, GIF, animated WebP or APNG file, or take one of the bundled clips.",
             f"{field}.sample",
         )
-    frames = wanted.frames or (Frames(0, sample.frames) if slot.moving else Frames())
+    frames = new.frames or (Frames(0, sample.frames) if slot.moving else Frames())
     try:
         frames.check_within(sample.frames)
     except InvalidInputError as error:
@@ -173,13 +173,13 @@ def _frames(wanted: NewInput, sample: Sample, slot: Slot, field: str) -> Frames:
 
 
 def _crop(
-    wanted: NewInput,
+    new: NewInput,
     sample: Sample,
     frames: Frames,
     field: str,
     transparent: Callable[[Sample, Rectangle, Frames], bool],
 ) -> Rectangle:
-    crop = wanted.crop or Rectangle(0, 0, sample.width, sample.height)
+    crop = new.crop or Rectangle(0, 0, sample.width, sample.height)
     try:
         crop.check_within(sample.width, sample.height)
     except InvalidInputError as error:

@@ -218,10 +218,10 @@ class SqlStore:
         return self._ids(sa.select(experiments.c.id).where(experiments.c.transient, experiments.c.created_at < moment))
 
     def used(self, digests: Collection[str]) -> set[str]:
-        wanted, found = list(digests), set[str]()
+        unread, found = list(digests), set[str]()
         with self._engine.begin() as connection:
-            for start in range(0, len(wanted), BATCH):
-                batch = wanted[start : start + BATCH]
+            for start in range(0, len(unread), BATCH):
+                batch = unread[start : start + BATCH]
                 for table in (samples, outputs):
                     found.update(connection.scalars(sa.select(table.c.digest).where(table.c.digest.in_(batch))))
         return found

@@ -41,7 +41,7 @@ def file_response(
     cache: str,
     disposition: Literal["inline", "attachment"] = "inline",
 ) -> Response:
-    """Answer with the file, the part of it that was asked for, or 304.
+    """Answer with the file, the part of it that was range_header for, or 304.
 
     Raises
     ------
@@ -62,10 +62,10 @@ def file_response(
 
 def _keep_usable_range(request: Request, size: int, tag: str) -> None:
     """Hide a ``Range`` that RFC 9110 lets servers ignore: malformed, of several parts, or of another version."""
-    asked = request.headers.get("range")
-    if asked is None:
+    range_header = request.headers.get("range")
+    if range_header is None:
         return
-    found = _RANGE.fullmatch(asked.replace(" ", "").lower())
+    found = _RANGE.fullmatch(range_header.replace(" ", "").lower())
     backwards = found and found["last"] and int(found["last"]) < int(found["first"])
     if not found or backwards or request.headers.get("if-range", f'"{tag}"') != f'"{tag}"':
         request.scope["headers"] = [

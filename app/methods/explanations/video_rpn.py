@@ -9,7 +9,7 @@ WATER = (("sand_under_water", "0,0,320,320"),)
 EXPLANATION = Explanation(
     what=(
         "Smoke, fire, foliage in the wind and the surface of water have no places and no moments: any part looks like "
-        "any other, now and later. Such a film is a texture with one dimension more. Random phase noise is the same "
+        "any other, now and later. Such a video is a texture with one dimension more. Random phase noise is the same "
         "in three dimensions as in two: the Fourier modulus of the clip over time and space is kept, and its phase "
         "drawn at random, the same for all colours.",
         "The modulus knows how fast everything moves, and where to. An oscillation in space that travels is an "
@@ -20,7 +20,7 @@ EXPLANATION = Explanation(
         "The result is periodic in all three directions: it plays in a loop without a jump, and tiles. The clip is "
         "not, so each of its frames is replaced by its periodic component, and the jump from the last frame to the "
         "first is taken out in the same way along time, where it would come back as a flicker. For a larger or a "
-        "longer film the clip becomes a spot in a larger block, faded out towards its borders.",
+        "longer video the clip becomes a spot in a larger block, faded out towards its borders.",
         "What stands still in the clip has frequency zero in time, and stays there: it comes out as a still texture "
         "beneath the moving one. A clip of which all frames are equal becomes the random phase noise of that picture, "
         "the one that RPN makes of it at the same seed, for as many frames as are asked for.",
@@ -29,14 +29,14 @@ EXPLANATION = Explanation(
         Formula(
             r"\hat{Z}(\omega, \xi) = \hat{h}(\omega, \xi)\, e^{i\theta(\omega, \xi)}, \qquad "
             r"\theta(-\omega, -\xi) = -\theta(\omega, \xi)",
-            r"$h$ is the film, $\omega$ the frequency in time, $\xi$ that in space; $\theta$ is uniform on "
+            r"$h$ is the video, $\omega$ the frequency in time, $\xi$ that in space; $\theta$ is uniform on "
             r"$]-\pi, \pi]$, the same for every channel, and zero at the origin.",
         ),
         Formula(
             r"\hat{s}(\omega, \xi) = \frac{\left(1 - e^{2\pi i k/T}\right) \left(\hat{h}_0(\xi) - "
             r"\hat{h}_{T-1}(\xi)\right)}{4\sin^2\frac{\pi k}{T} + 4\sin^2\frac{\pi k_1}{H} + 4\sin^2\frac{\pi k_2}{W}}",
-            r"What is taken out along time: the smooth film that jumps as the clip does between its last frame and its "
-            r"first. $\omega = 2\pi k / T$ and $\xi = (2\pi k_1 / H, 2\pi k_2 / W)$, so a frame counts as a pixel. "
+            r"What is taken out along time: the smooth video that jumps as the clip does between its last frame and "
+            r"its first. $\omega = 2\pi k / T$ and $\xi = (2\pi k_1 / H, 2\pi k_2 / W)$, so a frame counts as a pixel. "
             r"At $k = 0$ it is zero: the average frame stays.",
         ),
         Formula(

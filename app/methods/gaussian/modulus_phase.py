@@ -53,10 +53,10 @@ def common_size(sizes: Sequence[Size]) -> tuple[int, int]:
 def check(sizes: Sequence[Size], resolved: Resolved[ModulusPhaseParams]) -> None:
     """Refuse a size beyond that of either crop."""
     widest, highest = common_size(sizes)
-    for name, asked, most in (("width", resolved.width, widest), ("height", resolved.height, highest)):
-        if asked > most:
+    for name, length, most in (("width", resolved.width, widest), ("height", resolved.height, highest)):
+        if length > most:
             raise InvalidInputError(
-                f"Choose a {name} of at most {most} pixels instead of {asked}, or larger crops: modulus and phase are "
+                f"Choose a {name} of at most {most} pixels instead of {length}, or larger crops: modulus and phase are "
                 f"swapped pixel for pixel, and the smaller crop has a {name} of {most}.",
                 f"parameters.{name}",
             )

@@ -26,10 +26,10 @@ from app.synthesis.gaussian.rpn import rpn
 def check(sizes: Sequence[Size], resolved: Resolved[StillParams]) -> None:
     """Refuse a size beyond the crop's."""
     size = sizes[0]
-    for name, asked, most in (("width", resolved.width, size.width), ("height", resolved.height, size.height)):
-        if asked > most:
+    for name, length, most in (("width", resolved.width, size.width), ("height", resolved.height, size.height)):
+        if length > most:
             raise InvalidInputError(
-                f"Choose a {name} of at most {most} pixels, the crop's own, instead of {asked}, or a larger crop: the "
+                f"Choose a {name} of at most {most} pixels, the crop's own, instead of {length}, or a larger crop: the "
                 "phase of the crop is kept, and there is none beyond it.",
                 f"parameters.{name}",
             )

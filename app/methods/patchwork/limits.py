@@ -152,11 +152,11 @@ def refuse_other_size(pattern: Size, resolved: Resolved[Any]) -> None:
     InvalidInputError
         At ``parameters.width`` or ``parameters.height``.
     """
-    for name, asked, own in (("width", resolved.width, pattern.width), ("height", resolved.height, pattern.height)):
-        if asked != own:
+    for name, length, own in (("width", resolved.width, pattern.width), ("height", resolved.height, pattern.height)):
+        if length != own:
             raise InvalidInputError(
                 f"The result always has the pattern's size ({pattern.width} × {pattern.height}); remove the {name} "
-                f"{asked}, or crop another pattern.",
+                f"{length}, or crop another pattern.",
                 f"parameters.{name}",
             )
 

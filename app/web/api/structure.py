@@ -61,12 +61,12 @@ async def read_structure(
     sample = await run_in_threadpool(service.samples.get, sample_id)
     area = Rectangle.parse(crop) if crop else Rectangle(0, 0, sample.width, sample.height)
     found = await in_upload_thread(request, service.meter.structure, sample, area, sigma, frame)
-    said = interpret(found.delta)
+    reading = interpret(found.delta)
     return StructureIndex(
         delta=None if found.delta is None else round(found.delta, 4),
         z=None if found.z is None else round(found.z, 2),
         sigma=sigma,
-        verdict=said.verdict,
-        words=said.words,
+        verdict=reading.verdict,
+        words=reading.words,
         crop=Crop(x=area.x, y=area.y, width=area.width, height=area.height),
     )

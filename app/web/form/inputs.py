@@ -158,8 +158,8 @@ def _read_frames(
     if not sample.moving:
         return None
     first, count = (values.get(name, "").strip() for name in time_names(number))
-    given = {"the first frame": first or "0"} | ({"their number": count} if slot.moving and count else {})
-    wrong = [f"got {quote(text)} for {name}" for name, text in given.items() if _parse_number(text) is None]
+    typed = {"the first frame": first or "0"} | ({"their number": count} if slot.moving and count else {})
+    wrong = [f"got {quote(text)} for {name}" for name, text in typed.items() if _parse_number(text) is None]
     if wrong:
         errors[f"{prefix(number)}time"] = f"{TWO_NUMBERS if slot.moving else ONE_NUMBER}; {', '.join(wrong)}."
         return None

@@ -198,7 +198,7 @@ def _shares_phase(other: Method, experiment: Experiment) -> bool:
 
 
 def tiling_note(experiments: Sequence[Experiment]) -> str:
-    """Say whether their textures tile in space, and films loop in time."""
+    """Say whether their textures tile in space, and videos loop in time."""
     declared = [method(experiment.method) for experiment in experiments]
     # Not validated: an old experiment's parameters may be none that a later version takes.
     params = [each.params.model_construct(**run.parameters) for each, run in zip(declared, experiments, strict=True)]

@@ -24,7 +24,7 @@ WIDE = 1760  # pixels; pictures of several sizes that are together no wider stan
 
 @dataclass(frozen=True)
 class ExhibitPicture:
-    """One picture or film; ``url`` is empty for one that is being made, and ``change`` for all but an exhibit's last.
+    """One picture or video; ``url`` is empty for one that is being made, and ``change`` for all but an exhibit's last.
 
     ``leads`` says that it is an exhibit's first and an input.
     """

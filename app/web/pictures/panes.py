@@ -17,10 +17,10 @@ CUBES = ("crop-cube", "cube")
 
 @dataclass(frozen=True)
 class Pane:
-    """One picture or film.
+    """One picture or video.
 
     ``page`` is where its title leads, ``measured`` whether its structure index was asked for, ``delta`` what that is,
-    None being too small to tell, ``video`` how a film plays, ``deep_url`` where it is at 16 bits.
+    None being too small to tell, ``video`` how a video plays, ``deep_url`` where it is at 16 bits.
     """
 
     title: str
@@ -71,7 +71,7 @@ def deep_url(experiment: Experiment, output: Output) -> str:
 
 
 def steps(experiment: Experiment) -> list[Pane]:
-    """What led to the texture, with it and without the rest of the gallery; of films the stills, their cubes first."""
+    """What led to the texture, with it and without the rest of the gallery; of videos the stills, their cubes first."""
     moving = is_video(experiment)
     found = [
         output
@@ -98,7 +98,7 @@ def describe_tiling(seamless: Sequence[bool]) -> str:
 
 
 def describe_looping(loops: Sequence[bool]) -> str:
-    """Say of one film, or of several, whether they play for ever; nothing of none."""
+    """Say of one video, or of several, whether they play for ever; nothing of none."""
     if not loops:
         return ""
     several = len(loops) > 1

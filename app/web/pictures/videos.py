@@ -9,7 +9,7 @@ from app.experiments.model import Experiment, Output
 
 @dataclass(frozen=True)
 class Video:
-    """A film; ``sources`` are (address, media type), the best first."""
+    """A video; ``sources`` are (address, media type), the best first."""
 
     sources: tuple[tuple[str, str], ...]
     poster: str
@@ -28,7 +28,7 @@ def display_url(experiment: Experiment, name: str) -> str:
 
 
 def find_video(experiment: Experiment, output: Output) -> Video | None:
-    """The film that an output is, None for a picture."""
+    """The video that an output is, None for a picture."""
     if not output.video:
         return None
     other = experiment.output(f"{output.name}{MP4_SUFFIX}")
