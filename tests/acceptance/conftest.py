@@ -232,7 +232,10 @@ def shown_pixels(page: Page, selector: str) -> np.ndarray:
     page.wait_for_function(
         """selector => {
             const shown = document.querySelector(selector);
-            return shown && (shown.naturalWidth ?? (shown.readyState ?? 4) - 1) > 0; // 2: a video has its picture
+            if (!shown) return false;
+            const canvas = new OffscreenCanvas(1, 1).getContext("2d");
+            canvas.drawImage(shown, 0, 0, 1, 1);
+            return canvas.getImageData(0, 0, 1, 1).data[3] > 0; // what has no picture yet draws nothing
         }""",
         arg=selector,
     )
