@@ -9,13 +9,16 @@ import pytest
 from PIL import Image
 from playwright.sync_api import Page, Route, expect
 
-SIDES = ("x", "y", "width", "height")
+from tests.acceptance import crops
+from tests.acceptance.crops import SIDES
+from tests.acceptance.keyboard import tab_to
+from tests.acceptance.records import record_of
+
 MIX = "/samples/gravel_gray?method=mix&crop=96,96,160,160"
 
 
 def crop_of(page: Page, number: int) -> list[int]:
-    prefix = "" if number == 1 else f"input-{number}-"
-    return [int(page.input_value(f"#{prefix}crop-{side}")) for side in SIDES]
+    return crops.crop_of(page, "" if number == 1 else f"input-{number}-")
 
 
 def drag(page: Page, number: int, start: tuple[float, float], end: tuple[float, float]) -> float:
@@ -32,22 +35,10 @@ def drag(page: Page, number: int, start: tuple[float, float], end: tuple[float, 
     return 1 / scale
 
 
-def tab_to(page: Page, selector: str, key: str = "Tab") -> None:
-    for _ in range(80):
-        page.keyboard.press(key)
-        if page.evaluate("selector => document.activeElement.matches(selector)", selector):
-            return
-    raise AssertionError(f"{key} does not lead to {selector}")
-
-
 def run(page: Page) -> None:
     page.get_by_role("button", name="Synthesise").click()
     page.wait_for_url("**/experiments/*")
     expect(page.locator(".viewer.live")).to_be_visible()
-
-
-def record_of(site: Any, page: Page) -> dict[str, Any]:
-    return dict(site.client.get("/api/v1/experiments/" + page.url.rsplit("/", 1)[-1]).json())
 
 
 def test_a_second_sample_is_chosen_and_its_crop_dragged(

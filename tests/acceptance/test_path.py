@@ -10,11 +10,10 @@ import pytest
 from PIL import Image
 from playwright.sync_api import JSHandle, Page, expect
 
+from tests.acceptance.crops import crop_of
+from tests.acceptance.keyboard import tab_to
+
 TEXTURE = ".pane:nth-child(2) img"
-
-
-def crop_of(page: Page) -> list[int]:
-    return [int(page.input_value(f"#crop-{side}")) for side in ("x", "y", "width", "height")]
 
 
 def assert_is_texture_of(texture: np.ndarray, sample: np.ndarray) -> None:
@@ -141,14 +140,6 @@ def test_a_file_that_is_too_large_is_not_sent(visitors: Any) -> None:
     expect(page.locator("#upload-error")).to_be_focused()
     expect(page.get_by_role("button", name="Choose")).to_be_visible()
     assert not [request for request in sent if request.startswith("POST")]
-
-
-def tab_to(page: Page, selector: str) -> None:
-    for _ in range(80):
-        page.keyboard.press("Tab")
-        if page.evaluate("selector => document.activeElement.matches(selector)", selector):
-            return
-    raise AssertionError(f"the Tab key does not lead to {selector}")
 
 
 def test_the_whole_way_by_keyboard(visitors: Any, photograph: Path) -> None:

@@ -7,19 +7,10 @@ from typing import Any
 import pytest
 from playwright.sync_api import Route, expect
 
-from tests.acceptance.clips.page import (
-    FRAMES,
-    HEIGHT,
-    MOVING,
-    SIDES,
-    WIDTH,
-    crop_of,
-    drag,
-    record_of,
-    shows,
-    tab_to,
-    time_of,
-)
+from tests.acceptance.clips.page import FRAMES, HEIGHT, MOVING, WIDTH, drag, shows, time_of
+from tests.acceptance.crops import SIDES, crop_of
+from tests.acceptance.keyboard import tab_to
+from tests.acceptance.records import record_of
 
 
 def test_upload_crop_in_space_and_time_and_run(

@@ -5,7 +5,8 @@ from typing import Any
 import pytest
 from playwright.sync_api import expect
 
-from tests.acceptance.clips.page import RATE, drag, record_of, shows, time_of
+from tests.acceptance.clips.page import RATE, drag, shows, time_of
+from tests.acceptance.records import record_of
 
 
 def test_the_reel_says_what_it_holds(visitors: Any, uploaded: str) -> None:
