@@ -39,14 +39,17 @@ fix: $(VENV)/.ready-dev node_modules/.ready ## mend what ruff and eslint can men
 # The drivers of browsers, and what is killed on purpose, leave sockets and processes to the garbage collector.
 LEFT_OPEN = -W default::ResourceWarning -W default::pytest.PytestUnraisableExceptionWarning
 
+# A machine that nobody watches looks twice before it says that a change broke something, and names what it saw once.
+SECOND_LOOK = $(if $(CI),--reruns 1 -rR)
+
 # What kills processes has the machine to itself.
 test: $(if $T,$(VENV)/.ready-dev,lint test-js programs) ## all that CI runs, or T=tests/web/test_press.py, a directory or one test
 ifdef T
 	$(WITH_BROWSER) $(BIN)/pytest $T
 else
-	$(WITH_BROWSER) $(BIN)/pytest -n 2 --dist loadfile -m 'not (acceptance or chaos or load)'
-	$(WITH_BROWSER) $(BIN)/pytest $(LEFT_OPEN) -n 2 --dist loadfile -m 'acceptance and not (chaos or load)' tests
-	$(WITH_BROWSER) $(BIN)/pytest $(LEFT_OPEN) -m 'chaos and not load' tests
+	$(WITH_BROWSER) $(BIN)/pytest $(SECOND_LOOK) -n 2 --dist loadfile -m 'not (acceptance or chaos or load)'
+	$(WITH_BROWSER) $(BIN)/pytest $(LEFT_OPEN) $(SECOND_LOOK) -n 2 --dist loadfile -m 'acceptance and not (chaos or load)' tests
+	$(WITH_BROWSER) $(BIN)/pytest $(LEFT_OPEN) $(SECOND_LOOK) -m 'chaos and not load' tests
 endif
 
 test-313: ## the tests without a browser on Python 3.13, or on the one that PYTHON_313 names, in an environment of their own

