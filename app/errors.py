@@ -1,5 +1,7 @@
 """Errors by meaning. `app.web.problems` maps them to HTTP answers, `app.cli.problems` prints them."""
 
+from typing import Self
+
 
 class AppError(Exception):
     """Base of every error whose message is meant for the person who caused it.
@@ -60,7 +62,32 @@ class ConflictError(AppError):
 
 
 class BusyError(AppError):
-    """The queue is full or the engine is not there; trying later helps."""
+    """Too much waits or runs already; trying later helps."""
+
+
+DATABASE, STORAGE, ENGINE, DISK_SPACE = "database", "storage", "engine", "disk space"  # parts that may be unavailable
+
+
+class UnavailableError(AppError):
+    """A part of the service cannot be reached for now: nobody's fault, least of all the experiment's.
+
+    What was accepted waits and is tried again; whoever asks is told to come back.
+
+    Parameters
+    ----------
+    part : str
+        `DATABASE`, `STORAGE`, `ENGINE` or `DISK_SPACE`.
+    message : str
+        Which part it is, in words, and what to do.
+    """
+
+    def __init__(self, part: str, message: str) -> None:
+        super().__init__(message)
+        self.part = part
+
+    def __reduce__(self) -> tuple[type[Self], tuple[str, str]]:
+        """Pickle both arguments: it is raised in worker processes and handled in the service."""
+        return type(self), (self.part, self.message)
 
 
 class CancelledError(AppError):

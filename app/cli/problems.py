@@ -5,7 +5,7 @@ from contextlib import contextmanager
 
 import typer
 
-from app.errors import AppError, BusyError
+from app.errors import AppError, BusyError, UnavailableError
 
 FAILED, WRONG = 1, 2
 EXIT_CODES = "Exit codes: 0 done, 1 it could not be done, 2 the request is wrong, 130 interrupted with Ctrl-C."
@@ -18,7 +18,7 @@ def plain_errors() -> Iterator[None]:
         yield
     except AppError as error:
         typer.echo(f"microtexture: {error.message}", err=True)
-        raise typer.Exit(FAILED if isinstance(error, BusyError) else WRONG) from None
+        raise typer.Exit(FAILED if isinstance(error, BusyError | UnavailableError) else WRONG) from None
     except OSError as error:
         about = f": {error.filename}" if error.filename else ""
         typer.echo(f"microtexture: {error.strerror or error}{about}", err=True)

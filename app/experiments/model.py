@@ -29,6 +29,49 @@ class Status(StrEnum):
         return self in {Status.SUCCEEDED, Status.FAILED, Status.CANCELLED}
 
 
+ATTEMPTS = 5  # deaths of its worker after which a job is at fault
+
+
+@dataclass(frozen=True)
+class Attempt:
+    """A run that ended because its worker died while service and engine lived; only those are charged to a job."""
+
+    #: When it ended.
+    at: datetime
+    #: What became of the worker, in words.
+    cause: str
+
+
+@dataclass(frozen=True)
+class Lease:
+    """The right to run a job and to record what comes of it, until somebody else has it.
+
+    Each lease of a job has a higher fencing number than the one before: who carries an older one changes nothing.
+    """
+
+    #: Its name: an experiment's id, or what `deep_job` makes of it.
+    job: str
+    #: The fencing number.
+    fence: int
+    #: What was charged to the job before.
+    attempts: tuple[Attempt, ...] = ()
+
+    @property
+    def last(self) -> bool:
+        """Whether the job fails if its worker dies once more."""
+        return len(self.attempts) >= ATTEMPTS - 1
+
+
+@dataclass(frozen=True)
+class Beat:
+    """The heartbeat of a lease: as long as its worker lives, the number grows."""
+
+    job: str
+    fence: int
+    #: Counts the renewals.
+    beat: int
+
+
 @dataclass(frozen=True, kw_only=True)
 class Sample(Media):
     """An uploaded or bundled picture or video, stored once, upright, in sRGB, without metadata."""

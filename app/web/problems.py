@@ -31,6 +31,7 @@ STATUS: dict[type[errors.AppError], int] = {
     errors.CancelledError: 409,
     errors.TimeLimitError: 422,
     errors.BusyError: 503,
+    errors.UnavailableError: 503,
 }
 
 _TITLES = {413: "Content Too Large", 422: "Unprocessable Content"}  # RFC 9110's names, which Python has from 3.13 on

@@ -2,6 +2,7 @@
 
 import asyncio
 import logging
+import pickle
 from typing import cast
 
 import httpx
@@ -154,7 +155,9 @@ def test_a_form_that_cannot_be_read(site, path, content, headers, status):
     assert site.incoming == []
 
 
-def test_an_unexpected_error_tells_nothing_and_is_logged(site, caplog):
+def answer_to(error: Exception, settings) -> httpx.Response:
+    """What a request is answered in which this is raised."""
+
     class Broken:
         ready = True
         samples = property(lambda self: self)
@@ -164,16 +167,35 @@ def test_an_unexpected_error_tells_nothing_and_is_logged(site, caplog):
         def close(self) -> None: ...
 
         def bundled(self):
-            raise RuntimeError("the password is swordfish")
+            raise error
 
-    transport = httpx.ASGITransport(create_app(site.settings, cast(Service, Broken())), raise_app_exceptions=False)
+    transport = httpx.ASGITransport(create_app(settings, cast(Service, Broken())), raise_app_exceptions=False)
 
     async def ask():
         async with httpx.AsyncClient(transport=transport, base_url="http://test") as client:
             return await client.get("/api/v1/samples")
 
+    return asyncio.run(ask())
+
+
+@pytest.mark.parametrize("part", [errors.DATABASE, errors.STORAGE, errors.ENGINE, errors.DISK_SPACE])
+def test_a_part_that_is_away_is_named_and_when_to_come_back(site, part):
+    response = answer_to(errors.UnavailableError(part, f"Try again in a minute: no {part} for now."), site.settings)
+    assert (response.status_code, response.headers["Content-Type"]) == (503, PROBLEM)
+    assert int(response.headers["Retry-After"]) > 0
+    assert part in response.json()["detail"]
+
+
+@pytest.mark.parametrize("kind", STATUS)
+def test_errors_come_out_of_another_process_as_they_were(kind):
+    error = kind("database", "It is away.") if kind is errors.UnavailableError else kind("It is wrong.")
+    copy = pickle.loads(pickle.dumps(error))
+    assert (type(copy), str(copy), vars(copy)) == (kind, error.message, vars(error))
+
+
+def test_an_unexpected_error_tells_nothing_and_is_logged(site, caplog):
     with caplog.at_level(logging.ERROR):
-        response = asyncio.run(ask())
+        response = answer_to(RuntimeError("the password is swordfish"), site.settings)
     assert (response.status_code, response.headers["Content-Type"]) == (500, PROBLEM)
     assert "swordfish" not in response.text
     assert "Content-Security-Policy" in response.headers
