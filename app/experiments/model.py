@@ -140,8 +140,8 @@ class Experiment:
     created_at: datetime
     #: Where it stands.
     status: Status = Status.QUEUED
-    #: How often a worker began it.
-    attempts: int = 0
+    #: Runs in which its worker died.
+    attempts: tuple[Attempt, ...] = ()
     #: Its files, in the order in which the method yields them.
     outputs: tuple[Output, ...] = ()
     #: Seconds by stage, in order.

@@ -42,7 +42,7 @@ def run_job(store: ExperimentStore, blobs: BlobStore, job: str, progress: Progre
     if experiment is None:
         return
     try:
-        if experiment.attempts > MAX_ATTEMPTS:
+        if len(experiment.attempts) > MAX_ATTEMPTS:
             raise AppError("Try a smaller width and height: running this experiment ended its worker again and again.")
         compute(store, blobs, experiment, progress, threads)
     except CancelledError:

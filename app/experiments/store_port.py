@@ -4,11 +4,19 @@ from collections.abc import Collection, Mapping, Sequence
 from datetime import datetime
 from typing import Any, Protocol
 
-from app.experiments.model import Experiment, Output, Page, Sample
+from app.experiments.model import Experiment, Lease, Output, Page, Sample
 
 
 class ExperimentStore(Protocol):
-    """Samples and experiments, durable. Every call is one transaction; every method may be called from any thread."""
+    """Samples and experiments, durable.
+
+    Every call is one transaction; every method may be called from any thread and raises `UnavailableError` if the
+    database cannot be reached for now. What is queued or runs has a job in `app.experiments.queue_port.JobQueue` of the
+    same database, which comes and goes in the same transactions. A worker records by its lease: without it, nothing.
+    """
+
+    def ping(self) -> None:
+        """Raise `UnavailableError` unless records can be written now."""
 
     def add_sample(self, sample: Sample, owner: str | None = None) -> None:
         """Insert a sample.
@@ -32,8 +40,14 @@ class ExperimentStore(Protocol):
     def bundled_samples(self) -> list[Sample]:
         """List the bundled samples, oldest first."""
 
-    def add(self, experiment: Experiment) -> None:
-        """Insert an experiment.
+    def add(self, experiment: Experiment, client: str = "") -> None:
+        """Insert an experiment, and queue it unless it is finished.
+
+        Parameters
+        ----------
+        experiment : Experiment
+        client : str
+            Who asks for it: clients take turns.
 
         Raises
         ------
@@ -43,8 +57,8 @@ class ExperimentStore(Protocol):
             If one of its samples is not there.
         """
 
-    def replace(self, experiment: Experiment) -> None:
-        """Insert the experiment, replacing an existing one or a tombstone with the same id."""
+    def replace(self, experiment: Experiment, client: str = "") -> None:
+        """Insert and queue the experiment, replacing an existing one or a tombstone with the same id."""
 
     def get(self, experiment_id: str) -> Experiment:
         """Read an experiment with its inputs and outputs.
@@ -78,28 +92,28 @@ class ExperimentStore(Protocol):
     def unfinished(self) -> list[str]:
         """List the ids of queued and running experiments that are not transient, oldest first."""
 
-    def start(self, experiment_id: str) -> Experiment | None:
-        """Mark an experiment as running and count the attempt.
+    def start(self, lease: Lease | str) -> Experiment | None:
+        """Mark an experiment as running.
 
         Returns
         -------
         Experiment or None
-            None if it is already finished, cancelled or deleted.
+            None if the lease is not held any more: it was cancelled, deleted or taken away.
         """
 
     def succeed(
         self,
-        experiment_id: str,
+        lease: Lease | str,
         outputs: Sequence[Output],
         timings: Mapping[str, float],
         diagnostics: Mapping[str, Any],
         environment: Mapping[str, str],
     ) -> bool:
-        """Record success together with the outputs.
+        """Record success together with the outputs, and end the job.
 
         Parameters
         ----------
-        experiment_id : str
+        lease : Lease
         outputs : sequence of Output
             In their order.
         timings : mapping
@@ -110,29 +124,36 @@ class ExperimentStore(Protocol):
         Returns
         -------
         bool
-            False, and nothing is recorded, if it is no longer running.
+            False, and nothing is recorded, if the lease is not held any more.
         """
 
-    def fail(self, experiment_id: str, error: str) -> bool:
-        """Record the failure of a queued or running experiment.
+    def fail(self, lease: Lease | str, error: str, cause: str | None = None) -> bool:
+        """Record the failure of an experiment, and end the job.
 
         Parameters
         ----------
-        experiment_id : str
+        lease : Lease
         error : str
             A sentence for people.
+        cause : str, optional
+            Charge a last attempt: what became of the worker, in words.
 
         Returns
         -------
         bool
-            False, and nothing is recorded, if it was finished already.
+            False, and nothing is recorded, if the lease is not held any more.
         """
 
     def cancel(self, experiment_id: str) -> bool:
-        """Record the cancellation of a queued or running experiment; False if it was finished already."""
+        """Record the cancellation of a queued or running experiment, and end its job; False if it was finished."""
 
-    def add_output(self, experiment_id: str, output: Output) -> None:
-        """Add an output after the others, or replace the one of its name.
+    def add_output(self, lease: Lease | str, output: Output) -> bool:
+        """Add an output that was computed at 16 bits after the others, or replace the one of its name.
+
+        Returns
+        -------
+        bool
+            False, and nothing is recorded, if the lease is not held any more.
 
         Raises
         ------
@@ -150,7 +171,7 @@ class ExperimentStore(Protocol):
         """
 
     def delete(self, experiment_id: str) -> None:
-        """Delete an experiment with its inputs and outputs; one that is not transient leaves a tombstone."""
+        """Delete an experiment with its inputs, outputs and jobs; one that is not transient leaves a tombstone."""
 
     def remove_unused_samples(self, created_before: datetime, among: Collection[str] | None = None) -> list[Sample]:
         """Delete uploads to which no experiment refers.

@@ -3,13 +3,13 @@
 import base64
 import binascii
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
-from datetime import datetime, timedelta
+from datetime import UTC, datetime, timedelta
 from typing import Any
 
 from app.errors import InvalidInputError
-from app.experiments.model import Experiment, ExperimentInput, Output, Sample, Status
+from app.experiments.model import Attempt, Experiment, ExperimentInput, Lease, Output, Sample, Status
 from app.images.crop import Frames, Rectangle
 from app.store.schema import EPOCH
 
@@ -32,7 +32,21 @@ def row_of_experiment(experiment: Experiment) -> dict[str, Any]:
     row["timings"] = dict(experiment.timings)
     row["diagnostics"] = dict(experiment.diagnostics)
     row["environment"] = dict(experiment.environment)
+    row["attempts"] = attempt_values(experiment.attempts)
     return row
+
+
+def attempt_values(attempts: Sequence[Attempt]) -> list[dict[str, str]]:
+    """Attempts as JSON: moments by ISO 8601, in UTC."""
+    return [{"at": attempt.at.astimezone(UTC).isoformat(), "cause": attempt.cause} for attempt in attempts]
+
+
+def attempts_of(values: Sequence[Mapping[str, str]]) -> tuple[Attempt, ...]:
+    return tuple(Attempt(datetime.fromisoformat(value["at"]), value["cause"]) for value in values)
+
+
+def lease_of(row: Row) -> Lease:
+    return Lease(row.id, row.fence, attempts_of(row.attempts))
 
 
 def input_rows(experiment: Experiment) -> list[dict[str, Any]]:
@@ -63,6 +77,7 @@ def experiments_of(rows: Sequence[Row], input_rows: Sequence[Row], output_rows: 
             **{
                 **row._mapping,
                 "status": Status(row.status),
+                "attempts": attempts_of(row.attempts),
                 "inputs": tuple(inputs[row.id]),
                 "outputs": tuple(outputs[row.id]),
             }

@@ -1,15 +1,12 @@
-"""Schema of the database: its tables, their upgrade, and how a connection is set up."""
+"""Schema of the database: its tables and their upgrade."""
 
-import sqlite3
-import time
-from contextlib import AbstractContextManager
 from datetime import UTC, datetime, timedelta
-from pathlib import Path
 
 import sqlalchemy as sa
-from sqlalchemy.engine import Connection, Dialect, Engine
+from sqlalchemy.engine import Connection, Dialect
 
-BUSY_SECONDS = 30  # how long a writer waits for another one
+from app.store.database import Database
+
 SCHEMA_LOCK = 0x6D6963726F  # any constant: names the advisory lock that PostgreSQL's schema is made under
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
@@ -59,7 +56,7 @@ experiments = sa.Table(
     sa.Column("owner", sa.Text, nullable=False),
     sa.Column("created_at", Moment, nullable=False),
     sa.Column("status", sa.Text, nullable=False),
-    sa.Column("attempts", sa.Integer, nullable=False),
+    sa.Column("attempts", sa.JSON, nullable=False, server_default=sa.text("'[]'")),
     sa.Column("timings", sa.JSON, nullable=False),
     sa.Column("diagnostics", sa.JSON, nullable=False, server_default=sa.text("'{}'")),
     sa.Column("environment", sa.JSON, nullable=False, server_default=sa.text("'{}'")),
@@ -105,27 +102,43 @@ outputs = sa.Table(
 deleted = sa.Table("deleted", metadata, sa.Column("id", sa.Text, primary_key=True))
 
 
-def connect(url: str) -> Engine:
-    """Connect to a database and make its schema, if need be; safe when several processes start at once."""
-    parsed = sa.make_url(url)
-    if parsed.get_backend_name() == "sqlite":
-        if parsed.database:
-            Path(parsed.database).parent.mkdir(parents=True, exist_ok=True)
-        engine = sa.create_engine(parsed, connect_args={"timeout": BUSY_SECONDS})
-        sa.event.listen(engine, "connect", _set_up_sqlite)
-        sa.event.listen(engine, "begin", _begin_sqlite)
-    else:
-        engine = sa.create_engine(parsed, pool_pre_ping=True)
-    with writing(engine) as connection:
-        if engine.dialect.name == "postgresql":
+jobs = sa.Table(
+    "jobs",
+    metadata,
+    sa.Column("id", sa.Text, primary_key=True),
+    sa.Column("client", sa.Text, nullable=False),
+    sa.Column("queued_at", Moment, nullable=False),
+    sa.Column("fence", sa.BigInteger, nullable=False, server_default="0"),
+    sa.Column("holder", sa.Text),
+    sa.Column("beat", sa.BigInteger, nullable=False, server_default="0"),
+    sa.Column("stage", sa.Text),
+    sa.Column("fraction", sa.Float, nullable=False, server_default="0"),
+    sa.Column("started_at", Moment),
+    sa.Column("attempts", sa.JSON, nullable=False, server_default=sa.text("'[]'")),
+    sa.Column("error", sa.Text),
+    sa.Column("failed_at", Moment),
+)
+
+
+def make_schema(database: Database) -> None:
+    """Make the schema, or bring that of an earlier version up to date; safe when several processes start at once."""
+    with database.writing() as connection:
+        if connection.dialect.name == "postgresql":
             connection.execute(sa.select(sa.func.pg_advisory_xact_lock(SCHEMA_LOCK)))
+        without_jobs = not sa.inspect(connection).has_table("jobs")
         metadata.create_all(connection)
         _add_new_columns(connection)
-    return engine
+        if without_jobs:
+            columns = (experiments.c.id, experiments.c.owner, experiments.c.created_at)
+            unfinished = sa.select(*columns).where(experiments.c.status.in_(("queued", "running")))
+            connection.execute(jobs.insert().from_select(["id", "client", "queued_at"], unfinished))
 
 
 def _add_new_columns(connection: Connection) -> None:
     """Bring the tables of an earlier version up to date: what was added since has a default for their rows."""
+    counts = {column["name"]: column["type"] for column in sa.inspect(connection).get_columns("experiments")}
+    if isinstance(counts.get("attempts"), sa.Integer):
+        connection.execute(sa.text("ALTER TABLE experiments DROP COLUMN attempts"))
     known = sa.inspect(connection)
     for table in metadata.sorted_tables:
         present = {column["name"] for column in known.get_columns(table.name)}
@@ -136,28 +149,3 @@ def _add_new_columns(connection: Connection) -> None:
                 if column is outputs.c.kind:
                     main = outputs.c.name == "texture"
                     connection.execute(outputs.update().where(main).values(kind="texture"))
-
-
-def writing(engine: Engine) -> AbstractContextManager[Connection]:
-    """Begin a transaction that will write: on SQLite with the write lock, so that it cannot fail half-way."""
-    return engine.execution_options(writes=True).begin()
-
-
-def _set_up_sqlite(connection: sqlite3.Connection, record: object) -> None:
-    connection.isolation_level = None  # the driver must not open transactions of its own: `_begin_sqlite` does
-    deadline = time.monotonic() + BUSY_SECONDS
-    while True:  # the switch to WAL ignores the busy timeout when several processes attempt it at once
-        try:
-            connection.execute("PRAGMA journal_mode=WAL")
-            break
-        except sqlite3.OperationalError:
-            if time.monotonic() > deadline:
-                raise
-            time.sleep(0.01)
-    connection.execute("PRAGMA synchronous=FULL")  # what was accepted survives a power cut too
-    connection.execute("PRAGMA foreign_keys=ON")
-
-
-def _begin_sqlite(connection: Connection) -> None:
-    writes = connection.get_execution_options().get("writes", False)
-    connection.exec_driver_sql("BEGIN IMMEDIATE" if writes else "BEGIN")

@@ -1,7 +1,7 @@
 """Experiment store over SQL: samples and experiments in SQLite or PostgreSQL."""
 
 from collections.abc import Collection, Mapping, Sequence
-from datetime import UTC, datetime
+from datetime import datetime
 from typing import Any
 
 import sqlalchemy as sa
@@ -9,8 +9,11 @@ from sqlalchemy.engine import Connection
 from sqlalchemy.exc import IntegrityError
 
 from app.errors import ConflictError, DeletedError, NotFoundError
-from app.experiments.model import Experiment, Output, Page, Sample, Status
+from app.experiments.model import DEEP, Attempt, Experiment, Lease, Output, Page, Sample, Status
+from app.store.database import Database
+from app.store.jobs import UNFINISHED, held, now, put, remove, remove_with_deep, unfinished
 from app.store.rows import (
+    attempt_values,
     cursor_after,
     experiments_of,
     input_rows,
@@ -20,9 +23,8 @@ from app.store.rows import (
     row_of_sample,
     sample_of,
 )
-from app.store.schema import connect, deleted, experiments, inputs, outputs, samples, writing
+from app.store.schema import deleted, experiments, inputs, make_schema, outputs, samples
 
-UNFINISHED = (Status.QUEUED, Status.RUNNING)
 BATCH = 500  # values of one IN (…): below every database's limit
 
 
@@ -36,20 +38,24 @@ class SqlStore:
     """
 
     def __init__(self, url: str) -> None:
-        self._engine = connect(url)
+        self.database = Database(url)
+        make_schema(self.database)
 
     def close(self) -> None:
-        self._engine.dispose()
+        self.database.close()
+
+    def ping(self) -> None:
+        self.database.ping()
 
     # samples
 
     def add_sample(self, sample: Sample, owner: str | None = None) -> None:
-        with writing(self._engine) as connection:
+        with self.database.writing() as connection:
             connection.execute(samples.insert().values(row_of_sample(sample, owner)))
 
     def sample(self, sample_id: str) -> Sample:
         query = samples.select().where(samples.c.id == _text(sample_id))
-        with self._engine.begin() as connection:
+        with self.database.reading() as connection:
             row = connection.execute(query).first()
         if row is None:
             raise NotFoundError(
@@ -59,7 +65,7 @@ class SqlStore:
 
     def bundled_samples(self) -> list[Sample]:
         query = samples.select().where(samples.c.bundled).order_by(samples.c.created_at, samples.c.id)
-        with self._engine.begin() as connection:
+        with self.database.reading() as connection:
             return [sample_of(row) for row in connection.execute(query)]
 
     def remove_unused_samples(self, created_before: datetime, among: Collection[str] | None = None) -> list[Sample]:
@@ -71,11 +77,11 @@ class SqlStore:
         if among is not None:
             unused.append(samples.c.id.in_(among))
         removed = []
-        with self._engine.begin() as connection:
+        with self.database.reading() as connection:
             candidates = connection.scalars(sa.select(samples.c.id).where(*unused)).all()
         for sample_id in candidates:  # one transaction each: a new experiment of one must not keep the others
             try:
-                with writing(self._engine) as connection:
+                with self.database.writing() as connection:
                     row = connection.execute(
                         samples.delete().where(samples.c.id == sample_id, *unused).returning(*samples.c)
                     ).first()
@@ -87,24 +93,25 @@ class SqlStore:
 
     # experiments
 
-    def add(self, experiment: Experiment) -> None:
+    def add(self, experiment: Experiment, client: str = "") -> None:
         try:
-            with writing(self._engine) as connection:
-                self._insert(connection, experiment)
+            with self.database.writing() as connection:
+                self._insert(connection, experiment, client)
         except IntegrityError:
             for item in experiment.inputs:
                 self.sample(item.sample)
             raise ConflictError("An experiment with this identifier exists already: send it again.") from None
 
-    def replace(self, experiment: Experiment) -> None:
-        with writing(self._engine) as connection:
+    def replace(self, experiment: Experiment, client: str = "") -> None:
+        with self.database.writing() as connection:
+            remove_with_deep(connection, experiment.id)
             for table in (experiments, deleted):
                 connection.execute(table.delete().where(table.c.id == experiment.id))
-            self._insert(connection, experiment)
+            self._insert(connection, experiment, client)
 
     def get(self, experiment_id: str) -> Experiment:
         experiment_id = _text(experiment_id)
-        with self._engine.begin() as connection:
+        with self.database.reading() as connection:
             found = self._read(connection, experiments.select().where(experiments.c.id == experiment_id))
             if found:
                 return found[0]
@@ -126,7 +133,7 @@ class SqlStore:
             query = query.where(
                 (experiments.c.created_at < moment) | ((experiments.c.created_at == moment) & (experiments.c.id < last))
             )
-        with self._engine.begin() as connection:
+        with self.database.reading() as connection:
             found = self._read(connection, query)
         more = len(found) > limit
         return Page(tuple(found[:limit]), cursor_after(found[limit - 1]) if more else None)
@@ -139,52 +146,75 @@ class SqlStore:
         )
         return self._ids(query)
 
-    def start(self, experiment_id: str) -> Experiment | None:
-        with writing(self._engine) as connection:
-            changed = connection.execute(
-                self._unfinished(experiment_id).values(
-                    status=Status.RUNNING, attempts=experiments.c.attempts + 1, started_at=_now()
-                )
-            ).rowcount
-            if not changed:
+    def start(self, lease: Lease | str) -> Experiment | None:
+        job, moment = _name(lease), now()
+        changes: dict[str, Any] = {"status": Status.RUNNING, "started_at": moment}
+        with self.database.writing() as connection:
+            if held(connection, lease) is None and isinstance(lease, Lease):
                 return None
-            return self._read(connection, experiments.select().where(experiments.c.id == experiment_id))[0]
+            found = self._read(connection, experiments.select().where(experiments.c.id == job))
+            if not found or found[0].status.finished:
+                return None
+            if isinstance(lease, str):
+                begun = Attempt(moment, "A worker began it.")
+                changes["attempts"] = attempt_values((*found[0].attempts, begun))
+            connection.execute(unfinished(job).values(changes))
+            return self._read(connection, experiments.select().where(experiments.c.id == job))[0]
 
     def succeed(
         self,
-        experiment_id: str,
+        lease: Lease | str,
         outputs_: Sequence[Output],
         timings: Mapping[str, float],
         diagnostics: Mapping[str, Any],
         environment: Mapping[str, str],
     ) -> bool:
-        with writing(self._engine) as connection:
+        job = _name(lease)
+        with self.database.writing() as connection:
+            if held(connection, lease) is None and isinstance(lease, Lease):
+                return False
             changed = connection.execute(
                 experiments.update()
-                .where(experiments.c.id == experiment_id, experiments.c.status == Status.RUNNING)
+                .where(experiments.c.id == job, experiments.c.status == Status.RUNNING)
                 .values(
                     status=Status.SUCCEEDED,
                     timings=dict(timings),
                     diagnostics=dict(diagnostics),
                     environment=dict(environment),
-                    finished_at=_now(),
+                    finished_at=now(),
                 )
             ).rowcount
+            if changed:
+                remove(connection, job)
             if changed and outputs_:
                 connection.execute(
-                    outputs.insert(),
-                    [output_row(experiment_id, place, output) for place, output in enumerate(outputs_)],
+                    outputs.insert(), [output_row(job, place, output) for place, output in enumerate(outputs_)]
                 )
         return bool(changed)
 
-    def fail(self, experiment_id: str, error: str) -> bool:
-        return self._finish(experiment_id, status=Status.FAILED, error=error)
+    def fail(self, lease: Lease | str, error: str, cause: str | None = None) -> bool:
+        values: dict[str, Any] = {"status": Status.FAILED, "error": error, "finished_at": now()}
+        with self.database.writing() as connection:
+            row = held(connection, lease)
+            if isinstance(lease, Lease):
+                if row is None:
+                    return False
+                if cause is not None:
+                    values["attempts"] = [*row.attempts, *attempt_values((Attempt(now(), cause),))]
+            remove(connection, _name(lease))
+            return bool(connection.execute(unfinished(_name(lease)).values(values)).rowcount)
 
     def cancel(self, experiment_id: str) -> bool:
-        return self._finish(experiment_id, status=Status.CANCELLED)
+        with self.database.writing() as connection:
+            remove(connection, experiment_id)
+            change = unfinished(experiment_id).values(status=Status.CANCELLED, finished_at=now())
+            return bool(connection.execute(change).rowcount)
 
-    def add_output(self, experiment_id: str, output: Output) -> None:
-        with writing(self._engine) as connection:
+    def add_output(self, lease: Lease | str, output: Output) -> bool:
+        experiment_id = _name(lease).partition(DEEP)[0]
+        with self.database.writing() as connection:
+            if held(connection, lease) is None and isinstance(lease, Lease):
+                return False
             status = connection.scalar(
                 sa.select(experiments.c.status).where(experiments.c.id == experiment_id).with_for_update()
             )
@@ -194,9 +224,10 @@ class SqlStore:
             connection.execute(outputs.delete().where(mine, outputs.c.name == output.name))
             place = connection.scalar(sa.select(sa.func.coalesce(sa.func.max(outputs.c.place) + 1, 0)).where(mine))
             connection.execute(outputs.insert().values(output_row(experiment_id, place or 0, output)))
+        return True
 
     def set_listed(self, experiment_id: str, listed: bool) -> None:
-        with writing(self._engine) as connection:
+        with self.database.writing() as connection:
             changed = connection.execute(
                 experiments.update().where(experiments.c.id == experiment_id).values(listed=listed)
             ).rowcount
@@ -204,7 +235,8 @@ class SqlStore:
             self.get(experiment_id)
 
     def delete(self, experiment_id: str) -> None:
-        with writing(self._engine) as connection:
+        with self.database.writing() as connection:
+            remove_with_deep(connection, experiment_id)
             transient = connection.scalar(
                 experiments.delete().where(experiments.c.id == experiment_id).returning(experiments.c.transient)
             )
@@ -219,7 +251,7 @@ class SqlStore:
 
     def used(self, digests: Collection[str]) -> set[str]:
         unread, found = list(digests), set[str]()
-        with self._engine.begin() as connection:
+        with self.database.reading() as connection:
             for start in range(0, len(unread), BATCH):
                 batch = unread[start : start + BATCH]
                 for table in (samples, outputs):
@@ -228,27 +260,21 @@ class SqlStore:
 
     def counts(self) -> Mapping[str, int]:
         query = sa.select(experiments.c.status, sa.func.count()).group_by(experiments.c.status)
-        with self._engine.begin() as connection:
+        with self.database.reading() as connection:
             found = {row[0]: row[1] for row in connection.execute(query)}
         return {status.value: found.get(status.value, 0) for status in Status}
 
     # shared parts
 
-    def _insert(self, connection: Connection, experiment: Experiment) -> None:
+    def _insert(self, connection: Connection, experiment: Experiment, client: str) -> None:
         connection.execute(experiments.insert().values(row_of_experiment(experiment)))
         connection.execute(inputs.insert(), input_rows(experiment))
+        if not experiment.status.finished:
+            put(connection, experiment.id, client)
 
     def _ids(self, query: sa.Select[tuple[str]]) -> list[str]:
-        with self._engine.begin() as connection:
+        with self.database.reading() as connection:
             return list(connection.scalars(query))
-
-    def _unfinished(self, experiment_id: str) -> sa.Update:
-        return experiments.update().where(experiments.c.id == experiment_id, experiments.c.status.in_(UNFINISHED))
-
-    def _finish(self, experiment_id: str, **values: Any) -> bool:
-        with writing(self._engine) as connection:
-            change = self._unfinished(experiment_id).values(finished_at=_now(), **values)
-            return bool(connection.execute(change).rowcount)
 
     def _read(self, connection: Connection, query: sa.Select[Any]) -> list[Experiment]:
         rows = connection.execute(query).all()
@@ -262,8 +288,8 @@ class SqlStore:
         return experiments_of(rows, *parts)
 
 
-def _now() -> datetime:
-    return datetime.now(UTC)
+def _name(lease: Lease | str) -> str:
+    return lease if isinstance(lease, str) else lease.job
 
 
 def _text(value: str) -> str:

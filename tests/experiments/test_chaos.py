@@ -79,5 +79,5 @@ def test_a_killed_service_finishes_after_a_restart_as_if_nothing_had_happened(
         process.wait(SECONDS)
         assert psutil.wait_procs(family, SECONDS)[1] == []
     one, other = idle.experiments.get(disturbed), idle.experiments.get(undisturbed)
-    assert (one.attempts, other.attempts) == (2, 1)
+    assert (len(one.attempts), len(other.attempts)) == (2, 1)
     assert one.outputs == other.outputs

@@ -95,7 +95,7 @@ def test_of_two_presses_at_once_the_slower_gets_the_fasters_experiment(
     add = idle._store.add
 
     def raced(experiment: Experiment) -> None:
-        faster.append(replace(experiment, attempts=7))
+        faster.append(replace(experiment, depth=16))
         add(faster[0])
         add(experiment)
 

@@ -14,6 +14,7 @@ import psycopg
 import pytest
 
 from app.experiments.model import Sample
+from app.store.queue import SqlQueue
 from app.store.sql import SqlStore
 from tests.store.records import a_sample
 
@@ -81,6 +82,11 @@ def open_store(store_url: str) -> Iterator[Callable[[], SqlStore]]:
 @pytest.fixture
 def store(open_store: Callable[[], SqlStore]) -> SqlStore:
     return open_store()
+
+
+@pytest.fixture
+def queue(store: SqlStore) -> SqlQueue:
+    return SqlQueue(store.database)
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ from sqlalchemy.exc import IntegrityError
 
 from app.errors import ConflictError
 from app.experiments.model import Sample, Status
-from app.store import schema, sql
+from app.store import jobs, sql
 from app.store.sql import SqlStore
 from tests.store.records import START, a_sample, an_experiment, an_output, succeeded
 
@@ -48,7 +48,7 @@ def test_a_finished_experiment_is_named_if_it_is_older(
     store.add(experiment)
     store.add(an_experiment(sample))
     store.start(experiment.id)
-    monkeypatch.setattr(sql, "_now", lambda: START - age)
+    monkeypatch.setattr(sql, "now", lambda: START - age)
     ends: dict[Status, Callable[[], bool]] = {
         Status.SUCCEEDED: lambda: store.succeed(experiment.id, [], {}, {}, {}),
         Status.FAILED: lambda: store.fail(experiment.id, "a reason"),
@@ -66,10 +66,11 @@ def test_a_sample_that_becomes_used_meanwhile_stays_and_the_others_go(
     for sample in samples:
         store.add_sample(sample)
     order: list[str] = []
+    writing = store.database.writing
 
     @contextmanager
-    def conflicting(engine: Any) -> Iterator[sa.Connection]:
-        with schema.writing(engine) as connection:
+    def conflicting() -> Iterator[sa.Connection]:
+        with writing() as connection:
             execute = connection.execute
 
             def refusing(statement: Any, *arguments: Any) -> Any:
@@ -82,7 +83,7 @@ def test_a_sample_that_becomes_used_meanwhile_stays_and_the_others_go(
             monkeypatch.setattr(connection, "execute", refusing)
             yield connection
 
-    monkeypatch.setattr(sql, "writing", conflicting)
+    monkeypatch.setattr(store.database, "writing", conflicting)
     removed = store.remove_unused_samples(START + TICK)
     monkeypatch.undo()
     assert sorted(order) == sorted(sample.id for sample in samples)
@@ -117,7 +118,7 @@ def test_only_what_succeeded_takes_an_output(store: SqlStore, sample: Sample, en
 
 def test_moments_are_those_of_the_change(store: SqlStore, sample: Sample, monkeypatch: pytest.MonkeyPatch) -> None:
     now = [START]
-    monkeypatch.setattr(sql, "_now", lambda: now[0])
+    monkeypatch.setattr(sql, "now", lambda: now[0])
     experiment = an_experiment(sample)
     store.add(experiment)
     found = store.get(experiment.id)
@@ -130,5 +131,5 @@ def test_moments_are_those_of_the_change(store: SqlStore, sample: Sample, monkey
 
 
 def test_now_is_in_universal_time() -> None:
-    assert sql._now().utcoffset() == timedelta(0)
-    assert isinstance(sql._now(), datetime)
+    assert jobs.now().utcoffset() == timedelta(0)
+    assert isinstance(jobs.now(), datetime)
