@@ -67,7 +67,7 @@ def finished(store: SqlStore, blobs: FileBlobs, monkeypatch: pytest.MonkeyPatch)
         store.add(experiment)
         store.start(experiment.id)
         texture = an_output(digest=blobs.put(experiment.id.encode()))
-        monkeypatch.setattr("app.store.sql._now", lambda: at)
+        monkeypatch.setattr("app.store.sql.now", lambda: at)
         assert store.succeed(experiment.id, [texture], {}, {}, {})
         return store.get(experiment.id)
 
