@@ -19,6 +19,7 @@ from app.store.blobs import FileBlobs
 from app.store.sql import SqlStore
 from app.synthesis import __version__
 from app.web import health, problems, uploads
+from app.web.access_log import keep_addresses_secret
 from app.web.api import docs, events, experiments, methods, outputs, samples, structure, synthesize
 from app.web.api.openapi import build_document
 from app.web.middleware.body_limit import BodyLimit
@@ -26,6 +27,7 @@ from app.web.middleware.cross_origin import CrossOrigin
 from app.web.middleware.head_as_get import HeadAsGet
 from app.web.middleware.metrics import CountRequests, Metrics
 from app.web.middleware.security_headers import SecurityHeaders
+from app.web.middleware.trusted_hosts import TrustedHosts
 from app.web.pages.errors import render_error
 from app.web.pages.routes import router as pages
 from app.web.shutdown import on_stop_signal
@@ -62,6 +64,7 @@ def create_app(settings: Settings | None = None, service: Service | None = None)
     settings = settings or Settings()
     require_files(settings.samples_dir)
     service = service or build_service(settings)
+    keep_addresses_secret()
     metrics = Metrics(service)
     app = FastAPI(
         title="Microtexture",
@@ -76,6 +79,7 @@ def create_app(settings: Settings | None = None, service: Service | None = None)
         middleware=[
             Middleware(CountRequests, metrics=metrics),
             Middleware(SecurityHeaders),
+            Middleware(TrustedHosts, names=settings.hosts),
             Middleware(CrossOrigin, public_address=settings.base_url),
             Middleware(HeadAsGet),
             Middleware(BodyLimit, upload=settings.max_upload_bytes),

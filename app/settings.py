@@ -1,10 +1,12 @@
 """Settings of the service: read once from the environment (prefix ``MICROTEXTURE_``), frozen, passed down."""
 
 import os
+import re
 from pathlib import Path
 from typing import Literal
+from urllib.parse import urlsplit
 
-from pydantic import Field, SecretStr
+from pydantic import Field, SecretStr, field_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 _PACKAGE = Path(__file__).resolve().parent
@@ -14,12 +16,15 @@ ROOT = _INSTALLED if _INSTALLED.is_dir() else _PACKAGE.parent  # of the three: a
 MEBIBYTE = 1 << 20
 MOST = 1 << 50  # bytes, pixels or frames: beyond any machine, and far from what no float holds
 YEAR = 366 * 24 * 3600.0  # seconds
+_HOST = re.compile(r"(?:\*\.)?[\w-]+(?:\.[\w-]+)*\.?|\[[0-9a-fA-F:.]+\]", re.ASCII)
 
 
 class Settings(BaseSettings):
     """Everything an operator may set; every field is the environment variable ``MICROTEXTURE_<NAME>``."""
 
-    model_config = SettingsConfigDict(env_prefix="MICROTEXTURE_", frozen=True, extra="ignore")
+    model_config = SettingsConfigDict(
+        env_prefix="MICROTEXTURE_", frozen=True, extra="ignore", hide_input_in_errors=True
+    )
 
     # State
     data_dir: Path = Field(Path("data"), description="Directory of the database and of the content-addressed files.")
@@ -66,7 +71,14 @@ class Settings(BaseSettings):
     base_url: str | None = Field(
         None, description="Public address, e.g. https://texture.example.org; default: the request's."
     )
-    operator_token: SecretStr | None = Field(None, description="Bearer token that may delete any experiment.")
+    trusted_hosts: str = Field(
+        "",
+        description="Names that it is reached by, with commas, e.g. texture.example.org,*.example.net; other Host "
+        "headers are answered 400. Default: any name.",
+    )
+    operator_token: SecretStr | None = Field(
+        None, min_length=16, description="Bearer token that may delete any experiment; at least 16 characters."
+    )
     catalogue: bool = Field(True, description="Whether the figures of the pages are made in the background.")
     sample_keep_hours: float = Field(
         24.0, ge=0, le=100 * YEAR / 3600, description="Hours an uploaded sample without an experiment is kept."
@@ -75,7 +87,26 @@ class Settings(BaseSettings):
         "info", description="The least that is logged: debug, info, warning or error."
     )
 
+    @field_validator("trusted_hosts")
+    @classmethod
+    def _check_hosts(cls, text: str) -> str:
+        for name in _split(text):
+            if not _HOST.fullmatch(name):
+                raise ValueError(f"{name!r} is no host name: leave out the scheme, the port and the path")
+        return text
+
+    @property
+    def hosts(self) -> frozenset[str]:
+        """The names of ``trusted_hosts``, and that of the public address; none if any name will do."""
+        names = frozenset(name.lower().removesuffix(".") for name in _split(self.trusted_hosts))
+        public = urlsplit(self.base_url or "").hostname
+        return names | {public} if names and public else names
+
     @property
     def sql_url(self) -> str:
         """The database's SQLAlchemy URL."""
         return self.database_url or f"sqlite:///{(self.data_dir / 'microtexture.sqlite3').resolve()}"
+
+
+def _split(text: str) -> list[str]:
+    return [part.strip() for part in text.split(",") if part.strip()]

@@ -8,13 +8,20 @@ import anyio.to_thread
 from fastapi import Depends, Request
 from starlette.responses import Response
 
+from app.errors import InvalidInputError
 from app.experiments.service import Service
 from app.experiments.tokens import derive_token, new_token
 from app.settings import Settings
+from app.web.headers import API_PREFIX
 
 OWNER_COOKIE = "microtexture_owner"
+GUESSABLE = (
+    "Send an Authorization: Bearer token of 16 to 512 visible ASCII characters that nobody can guess, "
+    "or none at all: you are then given one."
+)
 _COOKIE_SECONDS = 400 * 24 * 3600  # browsers keep no cookie for longer
-_TOKEN = re.compile(r"[!-~]{1,512}")
+_TOKEN = re.compile(r"[!-~]{16,512}")
+_READING = {"GET", "HEAD"}
 _PRESS = re.compile(r"[0-9a-f]{48}")
 _Result = TypeVar("_Result")
 
@@ -28,11 +35,21 @@ def get_settings(request: Request) -> Settings:
 
 
 def owner_token(request: Request) -> str | None:
-    """Find the token of who is asking: from ``Authorization: Bearer``, else from the cookie."""
-    scheme, _, token = request.headers.get("authorization", "").partition(" ")
-    if scheme.lower() != "bearer":
-        token = request.cookies.get(OWNER_COOKIE, "")
-    token = token.strip()
+    """Find the token of who is asking: from ``Authorization: Bearer``, else from the cookie.
+
+    Raises
+    ------
+    InvalidInputError
+        If a program sends a token that somebody could guess, or that is none, with what changes something.
+    """
+    scheme, _, bearer = request.headers.get("authorization", "").partition(" ")
+    if scheme.lower() == "bearer":
+        token = bearer.strip()
+        if _TOKEN.fullmatch(token):
+            return token
+        if request.scope["path"].startswith(API_PREFIX) and request.method not in _READING:
+            raise InvalidInputError(GUESSABLE, "authorization")
+    token = request.cookies.get(OWNER_COOKIE, "").strip()
     return token if _TOKEN.fullmatch(token) else None
 
 

@@ -51,7 +51,10 @@ TEMPLATES.env.globals.update(meter_limits=(MICRO, STRUCTURED), meter_end=METER_E
 
 
 def render(request: Request, template: str, context: Mapping[str, Any], status: int = 200) -> Response:
-    """Fill a page in. Pages change with every experiment, so nothing keeps a copy of one without asking."""
+    """Fill a page in. Pages change with every experiment, so nothing keeps a copy of one without asking.
+
+    They are for who asked: some show the owner's buttons.
+    """
     response = TEMPLATES.TemplateResponse(request, template, dict(context), status_code=status)
-    response.headers["Cache-Control"] = "no-cache"
+    response.headers["Cache-Control"] = "private, no-cache"
     return response
