@@ -1,5 +1,6 @@
 """Errors by meaning. `app.web.problems` maps them to HTTP answers, `app.cli.problems` prints them."""
 
+from collections.abc import Mapping
 from typing import Self
 
 
@@ -63,6 +64,25 @@ class ConflictError(AppError):
 
 class BusyError(AppError):
     """Too much waits or runs already; trying later helps."""
+
+
+class QuotaError(AppError):
+    """Who asks has had its share for now.
+
+    Parameters
+    ----------
+    message : str
+        How much there is, and when to try again.
+    retry_after : int, optional
+        Seconds until it is worth it.
+    fields : mapping, optional
+        Header fields that say how much is left.
+    """
+
+    def __init__(self, message: str, retry_after: int = 60, fields: Mapping[str, str] | None = None) -> None:
+        super().__init__(message)
+        self.retry_after = retry_after
+        self.fields = dict(fields or {})
 
 
 DATABASE, STORAGE, ENGINE, DISK_SPACE = "database", "storage", "engine", "disk space"  # parts that may be unavailable

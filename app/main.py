@@ -22,10 +22,12 @@ from app.web import health, problems, uploads
 from app.web.access_log import keep_addresses_secret
 from app.web.api import docs, events, experiments, methods, outputs, samples, structure, synthesize
 from app.web.api.openapi import build_document
+from app.web.limits import Limits
 from app.web.middleware.body_limit import BodyLimit
 from app.web.middleware.cross_origin import CrossOrigin
 from app.web.middleware.head_as_get import HeadAsGet
 from app.web.middleware.metrics import CountRequests, Metrics
+from app.web.middleware.rate_limit_fields import RateLimitFields
 from app.web.middleware.security_headers import SecurityHeaders
 from app.web.middleware.trusted_hosts import TrustedHosts
 from app.web.pages.errors import render_error
@@ -79,13 +81,15 @@ def create_app(settings: Settings | None = None, service: Service | None = None)
         middleware=[
             Middleware(CountRequests, metrics=metrics),
             Middleware(SecurityHeaders),
+            Middleware(BodyLimit, upload=settings.max_upload_bytes),
             Middleware(TrustedHosts, names=settings.hosts),
             Middleware(CrossOrigin, public_address=settings.base_url),
             Middleware(HeadAsGet),
-            Middleware(BodyLimit, upload=settings.max_upload_bytes),
+            Middleware(RateLimitFields),
         ],
     )
     app.state.settings, app.state.service, app.state.metrics = settings, service, metrics
+    app.state.limits = Limits(settings)
     app.state.stopping = asyncio.Event()
     app.state.upload_threads = anyio.CapacityLimiter(UPLOADS_AT_ONCE)
     problems.install(app, render_error)

@@ -16,6 +16,8 @@ ROOT = _INSTALLED if _INSTALLED.is_dir() else _PACKAGE.parent  # of the three: a
 MEBIBYTE = 1 << 20
 MOST = 1 << 50  # bytes, pixels or frames: beyond any machine, and far from what no float holds
 YEAR = 366 * 24 * 3600.0  # seconds
+_ONE_LIMIT = r"[1-9]\d{0,8}/(?:[1-9]\d{0,3} )?(?:second|minute|hour|day)s?"
+_LIMIT = re.compile(f"{_ONE_LIMIT}(?:;{_ONE_LIMIT})*", re.ASCII)
 _HOST = re.compile(r"(?:\*\.)?[\w-]+(?:\.[\w-]+)*\.?|\[[0-9a-fA-F:.]+\]", re.ASCII)
 
 
@@ -67,6 +69,28 @@ class Settings(BaseSettings):
         2048 * MEBIBYTE, ge=64 * MEBIBYTE, le=MOST, description="Bytes that decoding one upload may use."
     )
 
+    # Fair shares
+    limits: bool = Field(True, description="Whether clients have shares and limits; False for a private host.")
+    queue_share: float = Field(
+        0.2, gt=0, le=1, description="Part of the queue that one client's waiting experiments may take."
+    )
+    limit_uploads: str = Field("30/minute;300/hour", description="Uploads of one client.")
+    limit_experiments: str = Field("60/minute;600/hour", description="Experiments that one client may submit.")
+    limit_conversions: str = Field(
+        "60/minute;600/hour", description="Outputs in another format and ZIP files that one client may ask for."
+    )
+    limit_deep: str = Field("20/minute;100/hour", description="Outputs at 16 bits that one client may ask for.")
+    limit_views: str = Field(
+        "1200/minute", description="Pictures of its uploads, measurements and checks that one client may ask for."
+    )
+    limit_streams: int = Field(16, ge=1, le=MOST, description="Event streams that one client may have open.")
+    limit_address: int = Field(
+        4, ge=1, le=MOST, description="How many clients' limits and shares one network address may use."
+    )
+    upload_budget: int = Field(
+        4096 * MEBIBYTE, ge=1, le=MOST, description="Bytes of disk that one client's uploads may take in a day."
+    )
+
     # Web
     base_url: str | None = Field(
         None, description="Public address, e.g. https://texture.example.org; default: the request's."
@@ -86,6 +110,13 @@ class Settings(BaseSettings):
     log_level: Literal["debug", "info", "warning", "error"] = Field(
         "info", description="The least that is logged: debug, info, warning or error."
     )
+
+    @field_validator("limit_uploads", "limit_experiments", "limit_conversions", "limit_deep", "limit_views")
+    @classmethod
+    def _check_limit(cls, text: str) -> str:
+        if text and not _LIMIT.fullmatch(text):
+            raise ValueError("write a limit as 30/minute;300/hour, or nothing for none")
+        return text
 
     @field_validator("trusted_hosts")
     @classmethod

@@ -64,6 +64,7 @@ def served(directory: Path, **settings: object) -> Iterator[Served]:
     environment = {
         **os.environ,
         "MICROTEXTURE_CATALOGUE": "false",  # what it makes in the background is not what is measured
+        "MICROTEXTURE_LIMITS": "false",  # one address asks for everything here
         "MICROTEXTURE_LOG_LEVEL": "warning",
         **variables,
         "MICROTEXTURE_DATA_DIR": str(directory),

@@ -24,6 +24,7 @@ ARGUMENTS = [
 profiles.register()
 
 os.environ.setdefault("MICROTEXTURE_CATALOGUE", "false")  # figures in the background would disturb what others measure
+os.environ.setdefault("MICROTEXTURE_LIMITS", "false")  # one address asks for everything here
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

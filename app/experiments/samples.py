@@ -42,6 +42,10 @@ class Samples:
         """Read one. Raises `NotFoundError`."""
         return self._store.sample(sample_id)
 
+    def stored_bytes(self, sample: Sample) -> int:
+        """Tell how much of the disk a sample takes."""
+        return self._blobs.path(sample.digest).stat().st_size
+
     def bundled(self) -> list[Sample]:
         """List the bundled ones that have come in so far, in the order of the catalogue."""
         return self._store.bundled_samples()

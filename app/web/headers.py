@@ -27,7 +27,9 @@ _HEADERS = {
     "Permissions-Policy": "camera=(), microphone=(), geolocation=(), payment=(), usb=()",
     "Cross-Origin-Opener-Policy": "same-origin",
 }
-_READABLE_HEADERS = "Accept-Ranges, Content-Disposition, Content-Range, ETag, Link, Retry-After"
+_READABLE_HEADERS = (
+    "Accept-Ranges, Content-Disposition, Content-Range, ETag, Link, RateLimit, RateLimit-Policy, Retry-After"
+)
 
 
 def security_headers(path: str) -> Iterator[tuple[str, str]]:

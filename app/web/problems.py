@@ -30,6 +30,7 @@ STATUS: dict[type[errors.AppError], int] = {
     errors.ConflictError: 409,
     errors.CancelledError: 409,
     errors.TimeLimitError: 422,
+    errors.QuotaError: 429,
     errors.BusyError: 503,
     errors.UnavailableError: 503,
 }
@@ -48,6 +49,13 @@ RenderError = Callable[[Request, int, str, str], Response]
 def status_of(error: errors.AppError) -> int:
     """Give the status code of an error's meaning."""
     return next((STATUS[kind] for kind in type(error).__mro__ if kind in STATUS), 500)
+
+
+def retry_headers(error: errors.AppError) -> dict[str, str]:
+    """Give the header that says when to ask again, of an error that passes."""
+    if isinstance(error, errors.QuotaError):
+        return {"Retry-After": str(error.retry_after)}
+    return {"Retry-After": str(RETRY_SECONDS)} if status_of(error) == 503 else {}
 
 
 def title(status: int) -> str:
@@ -77,8 +85,12 @@ def respond(
     faults: Sequence[Mapping[str, str]] = (),
     headers: Mapping[str, str] | None = None,
 ) -> Response:
-    """Make a problem for a program, a page for a person: by the address that was asked for."""
-    if request.scope["path"].startswith(API_PREFIX):
+    """Make a problem for a program, a page for a person: by the address that was asked for, and by who asks.
+
+    A browser says when it asks for something to show in a tab: a link to a download leads into the API.
+    """
+    in_a_tab = request.headers.get("sec-fetch-dest") == "document"
+    if request.scope["path"].startswith(API_PREFIX) and not in_a_tab:
         return problem(status, detail, faults=faults, headers=headers)
     render: RenderError = request.app.state.render_error
     response = render(request, status, title(status), detail)
@@ -95,7 +107,7 @@ async def _app_error(request: Request, error: Exception) -> Response:
         status,
         error.message,
         faults=[{"field": field, "message": error.message}] if field else [],
-        headers={"Retry-After": str(RETRY_SECONDS)} if status == 503 else None,
+        headers=retry_headers(error),
     )
 
 

@@ -6,16 +6,20 @@ from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, BinaryIO
+from typing import TYPE_CHECKING, BinaryIO, cast
 
 import anyio.to_thread
 from fastapi import Request
 from python_multipart.exceptions import FormParserError
 from python_multipart.multipart import MultipartParser, parse_options_header
+from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 
 from app.errors import TooLargeError
-from app.web.deps import get_settings
+from app.experiments.model import Sample
+from app.web.clients import client_of
+from app.web.deps import get_service, get_settings, in_upload_thread
+from app.web.limits import Limits
 from app.web.middleware.body_limit import format_bytes
 
 if TYPE_CHECKING:
@@ -180,6 +184,15 @@ async def _read(
     for target in targets.values():
         await anyio.to_thread.run_sync(target.flush)
     return Form(parts.fields, {name: Path(target.name) for name, target in targets.items()})
+
+
+async def add_sample(request: Request, path: Path, owner: str | None) -> Sample:
+    """Make a sample of a received file; what it takes on the disk counts for the client."""
+    service = get_service(request)
+    sample = await in_upload_thread(request, service.samples.add, path, owner)
+    limits = cast(Limits, request.app.state.limits)
+    limits.count_bytes(client_of(request), await run_in_threadpool(service.samples.stored_bytes, sample))
+    return sample
 
 
 def remove_abandoned(data_dir: Path) -> None:

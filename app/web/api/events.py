@@ -14,6 +14,7 @@ from app.web.api.experiments import ExperimentId
 from app.web.api.openapi import problems
 from app.web.api.records import API, ProgressRecord
 from app.web.deps import ServiceDep
+from app.web.limits import hold_stream
 from app.web.shutdown import unless_stopping
 
 router = APIRouter(prefix=f"{API}/experiments", tags=["experiments"])
@@ -39,9 +40,9 @@ async def _check_stream(
     "/{experiment_id}/events",
     name="experiment_events",
     summary="Follow an experiment",
-    dependencies=[Depends(_check_stream)],
+    dependencies=[Depends(_check_stream), Depends(hold_stream)],
     response_class=EventSourceResponse,
-    responses={204: {"description": "You have seen the end (`Last-Event-ID`)."}, **problems(404, 410, 422)},
+    responses={204: {"description": "You have seen the end (`Last-Event-ID`)."}, **problems(404, 410, 422, 429)},
 )
 async def experiment_events(
     experiment_id: ExperimentId, request: Request, service: ServiceDep

@@ -19,6 +19,7 @@ from app.web.api.bodies import IDENTIFIER, Body, InputBody, ListedBody, without_
 from app.web.api.openapi import EXAMPLE_METHOD, EXAMPLE_SAMPLE, OWNER, parameters_schema, problems
 from app.web.api.records import API, ExperimentList, ExperimentRecord, PlanRecord
 from app.web.deps import ServiceDep, TokenDep, base_url, remember_owner
+from app.web.limits import EXPERIMENTS, VIEWS, take
 from app.web.shutdown import unless_stopping
 
 LONGEST = 60  # seconds that `Prefer: wait=` waits
@@ -112,10 +113,11 @@ _CREATED = {
 
 
 @router.post(
-    "/check", dependencies=[Depends(require_json)], summary="Check before running", responses=problems(404, 422)
+    "/check", dependencies=[Depends(require_json)], summary="Check before running", responses=problems(404, 422, 429)
 )
-async def check_experiment(body: ExperimentBody, service: ServiceDep) -> PlanRecord:
+async def check_experiment(body: ExperimentBody, request: Request, service: ServiceDep) -> PlanRecord:
     """Say what it would make and how much memory it would take, or what is wrong with it; nothing is run."""
+    take(request, VIEWS)
     return PlanRecord.from_source(await run_in_threadpool(lambda: service.submission.check(body.to_request())))
 
 
@@ -128,7 +130,7 @@ async def check_experiment(body: ExperimentBody, service: ServiceDep) -> PlanRec
     responses={
         201: _CREATED,
         202: {**_CREATED, "description": "Accepted: it waits or runs."},
-        **problems(422, 503),
+        **problems(422, 429, 503),
     },
     openapi_extra={"security": OWNER},
 )
@@ -150,6 +152,7 @@ async def submit_experiment(
 
     Without a token of yours the record holds a new `owner_token`, once.
     """
+    take(request, EXPERIMENTS)
     owner = token or new_token()
     try:
         experiment = await run_in_threadpool(service.submission.submit, body.to_request(), owner)

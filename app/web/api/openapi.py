@@ -35,6 +35,8 @@ Upload a photograph or take a bundled sample, name a method, get the texture.
 * **Owners**: who submits an experiment without a token is given one in `owner_token`; `Authorization: Bearer <token>`
   then allows to cancel, delete and unlist. Browsers keep it in a cookie.
 * **Errors** are `application/problem+json` (RFC 9457); `errors` names the fields at fault.
+* **Limits**: one client may not ask for everything; 429 says in `Retry-After` how long to wait, and the `RateLimit`
+  header of what is counted how much is left.
 * **From other web pages**: every GET may be read from any origin, without cookies; what changes something may not be
   called.
 """
@@ -133,7 +135,7 @@ def _declare_problems(operation: dict[str, Any]) -> None:
     for status, response in responses.items():
         if status.isdigit() and int(status) >= 400:
             response["content"] = {MEDIA_TYPE: {"schema": {"$ref": REF.format(model="Problem")}}}
-            if status == "503":
+            if status in ("429", "503"):
                 response["headers"] = {
                     "Retry-After": {"description": "Seconds.", "schema": {"type": "integer", "example": RETRY_SECONDS}}
                 }

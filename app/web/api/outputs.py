@@ -19,6 +19,7 @@ from app.web.api.openapi import problems
 from app.web.api.records import API
 from app.web.deps import ServiceDep
 from app.web.file_response import FOREVER, FOREVER_FOR_ME, SUFFIXES, file_response, matches, not_modified
+from app.web.limits import CONVERSIONS, DEEP, VIEWS, take
 
 router = APIRouter(prefix=f"{API}/experiments", tags=["experiments"])
 
@@ -52,7 +53,7 @@ def file_name(experiment: Experiment, output: str, suffix: str) -> str:
         },
         206: {"description": "The range that was asked for.", "content": _PICTURES},
         304: {"description": "You have it already."},
-        **problems(404, 409, 410, 416, 422, 503),
+        **problems(404, 409, 410, 416, 422, 429, 503),
     },
 )
 async def experiment_output(
@@ -82,6 +83,7 @@ async def experiment_output(
         tag = f"{tag}-{format or ''}{depth or ''}"
         if matches(request, tag):
             return not_modified(tag, cache)
+        take(request, _kind(format, depth))
         path, media_type = await service.outputs.convert(experiment_id, name, format, DEPTHS.get(depth))
     return file_response(
         request,
@@ -104,7 +106,7 @@ async def experiment_output(
             "description": "A ZIP file with every listed output and the record.",
             "content": {"application/zip": {"schema": {"type": "string", "format": "binary"}}},
         },
-        **problems(404, 409, 410),
+        **problems(404, 409, 410, 429),
     },
 )
 def experiment_zip(experiment_id: ExperimentId, request: Request, service: ServiceDep) -> Response:
@@ -112,6 +114,7 @@ def experiment_zip(experiment_id: ExperimentId, request: Request, service: Servi
     experiment = service.experiments.get(experiment_id)
     if experiment.status is not Status.SUCCEEDED:
         raise ConflictError(f"The experiment has no outputs: it is {experiment.status}.")
+    take(request, CONVERSIONS)
     record = record_of(request, service, experiment).model_dump(mode="json", exclude_unset=True)
     files = [
         (f"{output.name}{SUFFIXES.get(output.media_type, '')}", service.outputs.get(experiment_id, output.name)[1])
@@ -124,6 +127,13 @@ def experiment_zip(experiment_id: ExperimentId, request: Request, service: Servi
         media_type="application/zip",
         headers={"Content-Disposition": f'attachment; filename="{name}"', "Cache-Control": "private, no-cache"},
     )
+
+
+def _kind(file_format: str | None, depth: str | None) -> str:
+    """Say as what a converted output counts: the pages themselves show those at 8 bits."""
+    if depth == "16":
+        return DEEP
+    return VIEWS if file_format is None else CONVERSIONS
 
 
 class _Sink(io.RawIOBase):

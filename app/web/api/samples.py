@@ -14,7 +14,8 @@ from app.web.api.openapi import EXAMPLE_SAMPLE, OWNER, problems
 from app.web.api.records import API, SampleList, SampleRecord
 from app.web.deps import ServiceDep, TokenDep, base_url, in_upload_thread
 from app.web.file_response import FOREVER, SUFFIXES, file_response
-from app.web.uploads import receive_form
+from app.web.limits import VIEWS, take, take_upload
+from app.web.uploads import add_sample, receive_form
 
 router = APIRouter(prefix=f"{API}/samples", tags=["samples"])
 
@@ -57,7 +58,7 @@ def list_samples(request: Request, service: ServiceDep) -> SampleList:
     summary="Upload a photograph or a clip",
     responses={
         201: {"headers": {"Location": {"description": "Address of the record.", "schema": {"type": "string"}}}},
-        **problems(422, 503),
+        **problems(422, 429, 503),
     },
     openapi_extra=_FORM,
 )
@@ -66,13 +67,14 @@ async def upload_sample(request: Request, response: Response, service: ServiceDe
 
     A sample that no experiment uses is removed after a day.
     """
+    take_upload(request)
     async with receive_form(request) as form:
         if form.file is None:
             raise InvalidInputError("Send a picture in the form's field 'file'.", "file")
         if form.fields:
             name = next(iter(form.fields))
             raise InvalidInputError(f"The form has one field, 'file'; {name!r} is not known.", name)
-        sample = await in_upload_thread(request, service.samples.add, form.file, token)
+        sample = await add_sample(request, form.file, token)
     record = SampleRecord.of(sample, base_url(request))
     response.headers["Location"] = record.url
     return record
@@ -91,7 +93,7 @@ def _file(description: str, *media_types: str) -> dict[int | str, dict[str, Any]
         200: {"description": description, "content": content},
         206: {"description": "The range that was asked for."},
         304: {"description": "You have it already."},
-        **problems(404, 416, 422),
+        **problems(404, 416, 422, 429),
     }
 
 
@@ -114,6 +116,8 @@ async def sample_image(
 ) -> Response:
     """Upright and in sRGB; at its own size if none is asked for. Of a video it is one frame."""
     sample = await run_in_threadpool(service.samples.get, sample_id)
+    if not sample.bundled:
+        take(request, VIEWS)
     path, media_type = await in_upload_thread(request, service.renditions.image, sample, size, frame)
     tag = f"{sample.digest}-{frame}-{path.stat().st_size}"
     return file_response(
@@ -143,6 +147,8 @@ async def sample_video(
 ) -> Response:
     """Upright, in sRGB and without sound; a sample that is a still picture has none."""
     sample = await run_in_threadpool(service.samples.get, sample_id)
+    if not sample.bundled:
+        take(request, VIEWS)
     path, media_type = await in_upload_thread(request, service.renditions.video, sample, file_format)
     tag = f"{sample.digest}-{sample.height}-{sample.rate:g}-{file_format}"
     return file_response(

@@ -15,6 +15,7 @@ from app.web.api.openapi import problems
 from app.web.api.records import API
 from app.web.api.samples import SampleId
 from app.web.deps import ServiceDep, in_upload_thread
+from app.web.limits import VIEWS, take
 
 LARGEST_SIGMA = 64
 
@@ -39,7 +40,7 @@ class StructureIndex(BaseModel):
     crop: Crop = Field(description="What was asked about. Of a side beyond 1024 pixels the middle 1024 are measured.")
 
 
-@router.get("/{sample_id}/structure", summary="Is it a micro-texture?", responses=problems(404, 422))
+@router.get("/{sample_id}/structure", summary="Is it a micro-texture?", responses=problems(404, 422, 429))
 async def read_structure(
     sample_id: SampleId,
     request: Request,
@@ -58,6 +59,7 @@ async def read_structure(
     frame: Annotated[int, Query(ge=0, le=FAR, description="Of a video: which frame, from 0.")] = 0,
 ) -> StructureIndex:
     """Measure a crop, within a tenth of a second for 512 × 512 pixels: random phase models reproduce micro-textures."""
+    take(request, VIEWS)
     sample = await run_in_threadpool(service.samples.get, sample_id)
     area = Rectangle.parse(crop) if crop else Rectangle(0, 0, sample.width, sample.height)
     found = await in_upload_thread(request, service.meter.structure, sample, area, sigma, frame)

@@ -19,6 +19,7 @@ from app.web.api.openapi import form_parameters, problems
 from app.web.api.records import API
 from app.web.deps import ServiceDep
 from app.web.file_response import SUFFIXES
+from app.web.limits import EXPERIMENTS, take, take_upload
 from app.web.uploads import Form, receive_form
 
 router = APIRouter(prefix=API, tags=["experiments"])
@@ -118,7 +119,7 @@ _FORM: dict[str, Any] = {
             "description": "The output.",
             "content": {media: {"schema": {"type": "string", "format": "binary"}} for media in FORMATS},
         },
-        **problems(409, 422, 503),
+        **problems(409, 422, 429, 503),
     },
     openapi_extra={"requestBody": {"required": True, "content": {"multipart/form-data": {"schema": _FORM}}}},
 )
@@ -127,6 +128,8 @@ async def synthesize(request: Request, service: ServiceDep) -> Response:
 
     What would change nothing of the answer is refused, for it may have been meant for another one.
     """
+    take_upload(request)
+    take(request, EXPERIMENTS)
     async with receive_form(request, FILES) as form:
         arguments = _read_arguments(request, form)
         running = asyncio.ensure_future(service.transient.synthesize(**arguments))

@@ -15,8 +15,9 @@ _DISCARDED = 3  # times the limit
 class BodyLimit:
     """Answers 413 to a body that is larger than its kind may be: ``upload`` bytes in a form, or a mebibyte of JSON.
 
-    What a client is still sending is read and dropped, up to a few times the limit: most clients look for an answer
-    only when they have sent everything, and a connection closed in their face loses it.
+    What a client is still sending when its form is refused, here or behind, is read and dropped, up to a few times the
+    limit: most clients look for an answer only when they have sent everything, and a connection closed in their face
+    loses it.
     """
 
     def __init__(self, app: ASGIApp, *, upload: int) -> None:
@@ -38,19 +39,28 @@ class BodyLimit:
                 await _discard(receive, _DISCARDED * limit)
             await respond(Request(scope), 413, detail)(scope, receive, send)
             return
-        received = 0
+        received, complete = 0, not is_form
 
         async def receive_limited() -> Message:
-            nonlocal received
+            nonlocal received, complete
             message = await receive()
             received += len(message.get("body", b""))
+            complete = complete or not message.get("more_body")
             if received > limit:
+                complete = True
                 if message.get("more_body"):
                     await _discard(receive, _DISCARDED * limit)
                 raise HTTPException(413, detail)
             return message
 
-        await self.app(scope, receive_limited, send)
+        async def send_when_read(message: Message) -> None:
+            nonlocal complete
+            if message["type"] == "http.response.start" and not complete and "expect" not in headers:
+                complete = True
+                await _discard(receive, _DISCARDED * limit)
+            await send(message)
+
+        await self.app(scope, receive_limited, send_when_read)
 
 
 async def _discard(receive: Receive, at_most: int) -> None:

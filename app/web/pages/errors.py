@@ -14,6 +14,7 @@ WORDS = {
     413: "File too large",
     415: "Unsupported file type",
     422: "Please correct the form",
+    429: "Too many requests — wait a moment",
     500: "Something went wrong",
     503: "Server busy — try again shortly",
 }

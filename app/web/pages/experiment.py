@@ -24,6 +24,7 @@ from app.methods.registry import METHODS, method
 from app.web.deps import ServiceDep, TokenDep, base_url, choose_owner, read_press, remember_owner
 from app.web.form.address import form_url, input_values, sample_url
 from app.web.form.inputs import max_inputs
+from app.web.limits import EXPERIMENTS, take
 from app.web.pages.snippets import snippets
 from app.web.pictures.panes import (
     crop_panes,
@@ -218,6 +219,7 @@ def again(
     press: Annotated[str, Form()] = "",
 ) -> Response:
     """Run the same crop once more: with a new seed, or by another method with the same phase."""
+    take(request, EXPERIMENTS)
     key = read_press(press)
     experiment = service.experiments.get(experiment_id)
     known = method(name).params.model_fields

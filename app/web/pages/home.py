@@ -14,12 +14,12 @@ from app.web.deps import (
     ServiceDep,
     SettingsDep,
     TokenDep,
-    in_upload_thread,
     remember_owner,
 )
-from app.web.problems import status_of
+from app.web.limits import take_upload
+from app.web.problems import retry_headers, status_of
 from app.web.templating import render
-from app.web.uploads import receive_form
+from app.web.uploads import add_sample, receive_form
 
 NEWEST = 8
 NOTHING_CHOSEN = "Choose a photograph or a clip first: a PNG, JPEG, WebP, TIFF, MP4, WebM, GIF or APNG file."
@@ -50,12 +50,15 @@ def _home(
 async def upload(request: Request, service: ServiceDep, settings: SettingsDep, token: TokenDep) -> Response:
     owner = token or new_token()
     try:
+        take_upload(request)
         async with receive_form(request) as form:
             if form.file is None:
                 raise InvalidInputError(NOTHING_CHOSEN, "file")
-            sample = await in_upload_thread(request, service.samples.add, form.file, owner)
+            sample = await add_sample(request, form.file, owner)
     except AppError as error:
-        return await run_in_threadpool(_home, request, service, settings, error.message, status_of(error))
+        page = await run_in_threadpool(_home, request, service, settings, error.message, status_of(error))
+        page.headers.update(retry_headers(error))
+        return page
     response = RedirectResponse(f"/samples/{sample.id}", HTTP_303_SEE_OTHER)
     remember_owner(request, response, owner)
     return response

@@ -21,7 +21,6 @@ from app.web.deps import (
     TokenDep,
     choose_owner,
     get_service,
-    in_upload_thread,
     read_press,
     remember_owner,
 )
@@ -29,11 +28,12 @@ from app.web.form.address import from_query, sample_url, with_switches
 from app.web.form.context import form_context
 from app.web.form.draft import Draft, read_form, with_error
 from app.web.form.inputs import Choices, further_numbers, prefix
+from app.web.limits import EXPERIMENTS, VIEWS, take, take_upload
 from app.web.pages.errors import WORDS
 from app.web.pages.structure import form_structure
-from app.web.problems import status_of
+from app.web.problems import retry_headers, status_of
 from app.web.templating import render
-from app.web.uploads import receive_form
+from app.web.uploads import add_sample, receive_form
 
 router = APIRouter(include_in_schema=False)
 
@@ -58,7 +58,7 @@ def _sample(
     context = form_context(sample, choices, draft) | {
         "limit": settings.max_upload_bytes,
         "structure": form_structure(get_service(request), sample, draft.values),
-        "summary_title": WORDS[503] if status == 503 else "Please correct the form",
+        "summary_title": WORDS[status] if status in (429, 503) else "Please correct the form",
     }
     return render(request, "sample.html", context, status)
 
@@ -80,7 +80,8 @@ async def submit(request: Request, service: ServiceDep, settings: SettingsDep, t
         owner = choose_owner(token, read_press(values.get("press", "")))
         for name, path in form.files.items():
             try:
-                values[names[name]] = (await in_upload_thread(request, service.samples.add, path, owner)).id
+                take_upload(request)
+                values[names[name]] = (await add_sample(request, path, owner)).id
             except AppError as error:
                 errors[names[name]] = error.message
         return await run_in_threadpool(_submit, request, service, settings, token or owner, values, errors)
@@ -93,6 +94,7 @@ async def _texts(request: Request) -> dict[str, str]:
 @router.post("/experiments/check")
 async def check(request: Request, service: ServiceDep, settings: SettingsDep) -> Response:
     """Say what is wrong with a form, or what it would make; nothing is run. The page asks while it is filled in."""
+    take(request, VIEWS)
     return await run_in_threadpool(_check, service, settings, await _texts(request))
 
 
@@ -127,13 +129,16 @@ def _submit(
     press = read_press(values.get("press", ""))
     owner = choose_owner(token, press)
     try:
+        take(request, EXPERIMENTS)
         experiment = service.submission.submit(submission.request, owner, press)
     except AppError as error:
         draft = with_error(submission, method(submission.request.method), error)
         with suppress(AppError):
             service.submission.check(submission.request)
             draft = replace(draft, lasting=frozenset(draft.errors))
-        return _sample(request, settings, sample, choices, draft, status_of(error))
+        page = _sample(request, settings, sample, choices, draft, status_of(error))
+        page.headers.update(retry_headers(error))
+        return page
     response = RedirectResponse(f"/experiments/{experiment.id}", HTTP_303_SEE_OTHER)
     remember_owner(request, response, owner)
     return response

@@ -1,0 +1,83 @@
+"""Client identity for fair shares: the address that a request comes from, and the owner's token that it carries.
+
+Nobody has to log in and a token is given to whoever asks, so a token alone limits nobody: every share counts for the
+token *and*, a few times larger, for the address. People behind one address are told apart by their tokens, and who
+makes tokens up gets no more than the address may.
+"""
+
+import ipaddress
+from dataclasses import dataclass
+
+from fastapi import Request
+
+from app.experiments.tokens import is_same_secret, token_digest
+from app.settings import Settings
+from app.web.deps import get_settings, owner_token
+
+IPV6_PREFIX = 64  # what one household or machine is given
+LOCAL = "local"  # a socket of this machine has no address
+PART = 16  # characters of each digest in a client's name
+
+
+@dataclass(frozen=True)
+class Client:
+    """Who asks.
+
+    Parameters
+    ----------
+    address : str
+        An IPv4 address, an IPv6 network, or `LOCAL`.
+    token : str, optional
+        Digest of the owner's token.
+    operator : bool
+        Whether the token is the operator's, whom nothing limits.
+    """
+
+    address: str
+    token: str | None = None
+    operator: bool = False
+
+    @property
+    def name(self) -> str:
+        """Name in the job queue: digests of the address and of the token, `PART` characters each, the address first.
+
+        The database learns no address in this way.
+
+        Examples
+        --------
+        >>> one, other = Client("203.0.113.7", token_digest("one")), Client("203.0.113.7", token_digest("other"))
+        >>> one.name[:PART] == other.name[:PART], one.name == other.name, len(one.name)
+        (True, False, 32)
+        """
+        return token_digest(self.address)[:PART] + (self.token or "")[:PART]
+
+
+def client_of(request: Request) -> Client:
+    """Tell who sent a request; behind a trusted proxy the server has put the client's address in its place."""
+    peer = request.client
+    token = owner_token(request)
+    settings: Settings = get_settings(request)
+    secret = settings.operator_token
+    operator = token is not None and secret is not None and is_same_secret(token, secret.get_secret_value())
+    return Client(network_of(peer.host if peer else ""), token and token_digest(token), operator)
+
+
+def network_of(host: str) -> str:
+    """Network that counts as one client: an IPv4 address, or the /64 of an IPv6 address.
+
+    Examples
+    --------
+    >>> network_of("203.0.113.7"), network_of("::ffff:203.0.113.7"), network_of("2001:db8:1:2:3:4:5:6%eth0")
+    ('203.0.113.7', '203.0.113.7', '2001:db8:1:2::/64')
+    >>> network_of("")
+    'local'
+    """
+    try:
+        address = ipaddress.ip_address(host.partition("%")[0].strip("[]"))
+    except ValueError:
+        return host or LOCAL
+    if isinstance(address, ipaddress.IPv4Address):
+        return str(address)
+    if address.ipv4_mapped:
+        return str(address.ipv4_mapped)
+    return str(ipaddress.ip_network((address, IPV6_PREFIX), strict=False))
