@@ -5,6 +5,8 @@ from typing import Protocol
 
 from app.experiments.model import Beat, Lease, Snapshot
 
+PLACE = 16  # characters of a client's name that say where it is; the others say who
+
 
 class JobQueue(Protocol):
     """Jobs that wait or run: the same for every web process and every engine on one database.
@@ -34,9 +36,10 @@ class JobQueue(Protocol):
     def lease(self, holder: str, *, alone: bool) -> Lease | None:
         """Lease the next job that waits.
 
-        Clients take turns: of every client the oldest job comes first, then of every client the second, and so on,
-        where what a client has running counts as the first; among equals the older one. Two callers never get the same
-        job.
+        Places take turns, and within a place its clients: of every one the oldest job comes first, then of every one
+        the second, and so on, where what runs already counts as the first; among equals the older one. A client's
+        place is the first `PLACE` characters of its name: who asks under many names from one place has the turns of
+        one. Two callers never get the same job.
 
         Parameters
         ----------
@@ -126,7 +129,7 @@ class JobQueue(Protocol):
         """Count the jobs that wait."""
 
     def waiting_of(self, client: str) -> int:
-        """Count the jobs of one client that wait."""
+        """Count the waiting jobs of all clients whose names begin so: of one, or of a place."""
 
     def leased_by(self, holder: str) -> list[Lease]:
         """List the leases that an engine holds."""

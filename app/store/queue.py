@@ -7,6 +7,7 @@ import sqlalchemy as sa
 from sqlalchemy.exc import IntegrityError
 
 from app.experiments.model import DEEP, Attempt, Beat, Lease, Snapshot, Status
+from app.experiments.queue_port import PLACE
 from app.store.database import Database
 from app.store.jobs import WAITING, held, now, of, put, put_back, remove, unfinished
 from app.store.rows import attempts_of, lease_of
@@ -140,7 +141,7 @@ class SqlQueue:
         return self._count(*WAITING)
 
     def waiting_of(self, client: str) -> int:
-        return self._count(*WAITING, jobs.c.client == client)
+        return self._count(*WAITING, jobs.c.client.startswith(client, autoescape=True))
 
     def leased_by(self, holder: str) -> list[Lease]:
         with self._database.reading() as connection:
@@ -155,17 +156,35 @@ class SqlQueue:
 
 
 def _turns() -> sa.Subquery:
-    """Which turn of its client every waiting job is: what the client has running comes before."""
-    running = (
-        sa.select(jobs.c.client, sa.func.count().label("jobs"))
-        .where(jobs.c.holder.is_not(None))
-        .group_by(jobs.c.client)
-        .subquery()
+    """Which turn of its client's place every waiting job is, where the clients of one place take turns themselves.
+
+    What a client or a place has running comes before.
+    """
+    place = sa.func.substr(jobs.c.client, 1, PLACE)
+    own = _ranked(
+        sa.select(jobs.c.id, jobs.c.queued_at, jobs.c.client, place.label("place")).where(*WAITING).subquery()
     )
-    rank = sa.func.row_number().over(partition_by=jobs.c.client, order_by=(jobs.c.queued_at, jobs.c.id))
+    of_place = _running(place)
+    rank = sa.func.row_number().over(partition_by=own.c.place, order_by=(own.c.turn, own.c.queued_at, own.c.id))
     return (
-        sa.select(jobs.c.id, jobs.c.queued_at, (rank + sa.func.coalesce(running.c.jobs, 0)).label("turn"))
-        .outerjoin(running, running.c.client == jobs.c.client)
-        .where(*WAITING)
+        sa.select(own.c.id, own.c.queued_at, (rank + sa.func.coalesce(of_place.c.jobs, 0)).label("turn"))
+        .outerjoin(of_place, of_place.c.name == own.c.place)
         .subquery()
     )
+
+
+def _ranked(waiting: sa.Subquery) -> sa.Subquery:
+    """Number the waiting jobs of every client."""
+    running = _running(jobs.c.client)
+    rank = sa.func.row_number().over(partition_by=waiting.c.client, order_by=(waiting.c.queued_at, waiting.c.id))
+    return (
+        sa.select(waiting, (rank + sa.func.coalesce(running.c.jobs, 0)).label("turn"))
+        .outerjoin(running, running.c.name == waiting.c.client)
+        .subquery()
+    )
+
+
+def _running(name: sa.ColumnElement[str]) -> sa.Subquery:
+    """Count what runs, by a name."""
+    counted = sa.select(name.label("name"), sa.func.count().label("jobs"))
+    return counted.where(jobs.c.holder.is_not(None)).group_by(name).subquery()

@@ -10,13 +10,13 @@ from dataclasses import dataclass
 
 from fastapi import Request
 
+from app.experiments.queue_port import PLACE
 from app.experiments.tokens import is_same_secret, token_digest
 from app.settings import Settings
 from app.web.deps import get_settings, owner_token
 
 IPV6_PREFIX = 64  # what one household or machine is given
 LOCAL = "local"  # a socket of this machine has no address
-PART = 16  # characters of each digest in a client's name
 
 
 @dataclass(frozen=True)
@@ -39,17 +39,17 @@ class Client:
 
     @property
     def name(self) -> str:
-        """Name in the job queue: digests of the address and of the token, `PART` characters each, the address first.
+        """Name in the job queue: digests of the address and of the token, `PLACE` characters each, the address first.
 
         The database learns no address in this way.
 
         Examples
         --------
         >>> one, other = Client("203.0.113.7", token_digest("one")), Client("203.0.113.7", token_digest("other"))
-        >>> one.name[:PART] == other.name[:PART], one.name == other.name, len(one.name)
+        >>> one.name[:PLACE] == other.name[:PLACE], one.name == other.name, len(one.name)
         (True, False, 32)
         """
-        return token_digest(self.address)[:PART] + (self.token or "")[:PART]
+        return token_digest(self.address)[:PLACE] + (self.token or "")[:PLACE]
 
 
 def client_of(request: Request) -> Client:

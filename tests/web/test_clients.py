@@ -5,8 +5,9 @@ import ipaddress
 from hypothesis import given
 from hypothesis import strategies as st
 
+from app.experiments.queue_port import PLACE
 from app.experiments.tokens import token_digest
-from app.web.clients import PART, Client, network_of
+from app.web.clients import Client, network_of
 
 
 @given(st.ip_addresses(v=4))
@@ -29,5 +30,5 @@ def test_the_queue_learns_digests_whose_first_part_is_the_address() -> None:
     tokens = [token_digest(word) for word in ("one", "other")]
     names = [Client("203.0.113.7", token).name for token in (*tokens, None)]
     assert len(set(names)) == 3
-    assert {name[:PART] for name in names} == {names[2]}
+    assert {name[:PLACE] for name in names} == {names[2]}
     assert all("203" not in name or name.isalnum() for name in names)
