@@ -38,6 +38,7 @@ from app.worker import run_job
 log = logging.getLogger(__name__)
 
 UPLOADS_AT_ONCE = 4
+SAFE_TOKEN = 16  # characters
 
 
 def build_service(settings: Settings) -> Service:
@@ -67,6 +68,8 @@ def create_app(settings: Settings | None = None, service: Service | None = None)
     require_files(settings.samples_dir)
     service = service or build_service(settings)
     keep_addresses_secret()
+    if settings.operator_token is not None and len(settings.operator_token.get_secret_value()) < SAFE_TOKEN:
+        log.warning("MICROTEXTURE_OPERATOR_TOKEN can be guessed: take at least %d random characters.", SAFE_TOKEN)
     metrics = Metrics(service)
     app = FastAPI(
         title="Microtexture",

@@ -101,11 +101,20 @@ class Settings(BaseSettings):
         "headers are answered 400. Default: any name.",
     )
     operator_token: SecretStr | None = Field(
-        None, min_length=16, description="Bearer token that may delete any experiment; at least 16 characters."
+        None, description="Bearer token that may delete any experiment; take 16 random characters or more."
     )
     catalogue: bool = Field(True, description="Whether the figures of the pages are made in the background.")
     sample_keep_hours: float = Field(
         24.0, ge=0, le=100 * YEAR / 3600, description="Hours an uploaded sample without an experiment is kept."
+    )
+    keep_unlisted_days: float | None = Field(
+        None,
+        gt=0,
+        le=100 * YEAR / 86400,
+        description="Days that a finished unlisted experiment is kept; for ever if unset.",
+    )
+    keep_days: float | None = Field(
+        None, gt=0, le=100 * YEAR / 86400, description="Days that any finished experiment is kept; for ever if unset."
     )
     log_level: Literal["debug", "info", "warning", "error"] = Field(
         "info", description="The least that is logged: debug, info, warning or error."

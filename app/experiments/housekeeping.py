@@ -10,6 +10,8 @@ from app.errors import DeletedError, NotFoundError
 from app.experiments.files.cache import FileCache
 from app.experiments.model import Experiment
 from app.experiments.ports import BlobStore, ExperimentStore
+from app.experiments.retention import Retention
+from app.experiments.steady_clock import SteadyClock
 from app.gallery.exhibits import exhibits
 
 log = logging.getLogger(__name__)
@@ -39,6 +41,8 @@ class Housekeeping:
         How long an upload without an experiment is kept.
     longest_run : timedelta
         After this long what is half-made was left behind by a killed process.
+    retention : Retention, optional
+        How long experiments are kept; by default for ever.
     """
 
     def __init__(
@@ -49,17 +53,19 @@ class Housekeeping:
         *,
         sample_keep: timedelta,
         longest_run: timedelta,
+        retention: Retention | None = None,
     ) -> None:
         self._store = store
         self._blobs = blobs
         self._cache = cache
         self._sample_keep = sample_keep
         self._longest_run = longest_run
+        self._retention = retention or Retention()
         self._unrecorded: dict[str, str] = {}
 
     def keep(self, closing: threading.Event) -> None:
         """Prune every hour, and offer the database again what it did not take, until ``closing`` is set."""
-        waited = 0.0
+        waited, clock = 0.0, SteadyClock()
         while not closing.wait(RECORD_SECONDS):
             try:
                 for experiment_id in list(self._unrecorded):
@@ -68,7 +74,7 @@ class Housekeeping:
                 waited += RECORD_SECONDS
                 if waited >= PRUNE_SECONDS:
                     waited = 0.0
-                    self.prune(None)
+                    self._prune_by(clock)
             except Exception:
                 log.exception("housekeeping failed; it will be tried again")
 
@@ -92,21 +98,33 @@ class Housekeeping:
         removed = self._store.remove_unused_samples(datetime.now(UTC), [sample_id])
         self._remove_files([sample.digest for sample in removed])
 
+    def _prune_by(self, clock: SteadyClock) -> None:
+        """Prune unless the clock was set lately: what is removed by its age would go too early."""
+        if clock.steady():
+            self.prune(None)
+        else:
+            log.warning("the clock was set within the last day: nothing is removed by its age until it has run on")
+
     def prune(self, older_than: timedelta | None) -> Pruned:
-        """Remove what nothing refers to and, where ``older_than`` is given, experiments that finished longer ago.
+        """Remove what nothing refers to and experiments that are kept no longer, by the settings or by ``older_than``.
 
         What the program's own pages show stays.
         """
         now = datetime.now(UTC)
         stale = self._delete_all(self._store.transient_before(now - self._longest_run))
-        if older_than is not None:
-            shown = exhibits()
-            finished = self._store.finished_before(now - older_than)
-            stale += self._delete_all(name for name in finished if name not in shown)
+        for age in (older_than, self._retention.every):
+            if age is not None:
+                stale += self._delete_old(self._store.finished_before(now - age))
+        if self._retention.unlisted is not None:
+            stale += self._delete_old(self._store.finished_before(now - self._retention.unlisted, unlisted=True))
         samples = self._store.remove_unused_samples(now - self._sample_keep)
         files = self._remove_files(self._blobs.digests())
         files += self._blobs.remove_temporary(now - self._longest_run)
         return Pruned(stale, len(samples), files)
+
+    def _delete_old(self, experiment_ids: list[str]) -> int:
+        shown = exhibits()
+        return self._delete_all(name for name in experiment_ids if name not in shown)
 
     def _delete_all(self, experiment_ids: Iterable[str]) -> int:
         deleted = 0

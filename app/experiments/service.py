@@ -13,6 +13,7 @@ from app.experiments.housekeeping import Housekeeping
 from app.experiments.meter import Meter
 from app.experiments.model import DEEP
 from app.experiments.ports import BlobStore, Executor, ExperimentStore
+from app.experiments.retention import Retention
 from app.experiments.samples import Samples
 from app.experiments.submission import Submission
 from app.experiments.transient import Transient
@@ -52,8 +53,12 @@ class Service:
         self.watching = Watching(store, executor)
         #: Files of experiments, in every format and depth.
         self.outputs = Outputs(store, blobs, executor, self.renditions, self.watching, queue_limit=settings.queue_limit)
+        #: When experiments go by themselves.
+        self.retention = Retention.by(settings)
         #: Deletes what is no longer used.
-        self.housekeeping = Housekeeping(store, blobs, cache, sample_keep=keep, longest_run=longest)
+        self.housekeeping = Housekeeping(
+            store, blobs, cache, sample_keep=keep, longest_run=longest, retention=self.retention
+        )
         #: Experiments by their ids.
         self.experiments = Experiments(store, executor, self.housekeeping, self.watching, settings.operator_token)
         #: Outputs straight from files.

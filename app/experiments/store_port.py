@@ -189,8 +189,8 @@ class ExperimentStore(Protocol):
             Those that were deleted.
         """
 
-    def finished_before(self, moment: datetime) -> list[str]:
-        """List the ids of the experiments that finished before this moment."""
+    def finished_before(self, moment: datetime, *, unlisted: bool = False) -> list[str]:
+        """List the ids of the experiments that finished before this moment, or of the unlisted ones among them."""
 
     def transient_before(self, moment: datetime) -> list[str]:
         """List the ids of the transient experiments that were submitted before this moment."""

@@ -116,7 +116,7 @@ class SqlStore:
             if found:
                 return found[0]
             if connection.scalar(sa.select(deleted.c.id).where(deleted.c.id == experiment_id)) is not None:
-                raise DeletedError("This experiment was deleted by its owner.")
+                raise DeletedError("This experiment was deleted by its owner or because of its age.")
         raise NotFoundError("There is no such experiment. Check the address.")
 
     def page(self, *, limit: int, cursor: str | None = None, method: str | None = None) -> Page:
@@ -243,8 +243,9 @@ class SqlStore:
             if transient is False:
                 connection.execute(deleted.insert().values(id=experiment_id))
 
-    def finished_before(self, moment: datetime) -> list[str]:
-        return self._ids(sa.select(experiments.c.id).where(experiments.c.finished_at < moment))
+    def finished_before(self, moment: datetime, *, unlisted: bool = False) -> list[str]:
+        query = sa.select(experiments.c.id).where(experiments.c.finished_at < moment)
+        return self._ids(query.where(~experiments.c.listed) if unlisted else query)
 
     def transient_before(self, moment: datetime) -> list[str]:
         return self._ids(sa.select(experiments.c.id).where(experiments.c.transient, experiments.c.created_at < moment))

@@ -11,9 +11,8 @@ from dataclasses import dataclass
 from fastapi import Request
 
 from app.experiments.queue_port import PLACE
-from app.experiments.tokens import is_same_secret, token_digest
-from app.settings import Settings
-from app.web.deps import get_settings, owner_token
+from app.experiments.tokens import token_digest
+from app.web.deps import is_operator, owner_token
 
 IPV6_PREFIX = 64  # what one household or machine is given
 LOCAL = "local"  # a socket of this machine has no address
@@ -56,9 +55,7 @@ def client_of(request: Request) -> Client:
     """Tell who sent a request; behind a trusted proxy the server has put the client's address in its place."""
     peer = request.client
     token = owner_token(request)
-    settings: Settings = get_settings(request)
-    secret = settings.operator_token
-    operator = token is not None and secret is not None and is_same_secret(token, secret.get_secret_value())
+    operator = token is not None and is_operator(request, token)
     return Client(network_of(peer.host if peer else ""), token and token_digest(token), operator)
 
 

@@ -96,6 +96,7 @@ def common_context(service: Service, experiment: Experiment, token: str | None) 
         "sources": _sources(service, experiment),
         "subject": subject(service, experiment),
         "owned": service.experiments.owns(experiment, token),
+        "kept_until": service.retention.end(experiment),
         "hidden": not experiment.listed and not is_exhibit(experiment),
         "rows": list(parameter_rows(experiment)),
         "edit_url": form_url(experiment),
