@@ -1,9 +1,11 @@
 """Service: the use cases, in parts. Pages, API and command line talk to these parts and to nothing below them."""
 
 import threading
+from collections.abc import Collection, Mapping
 from datetime import timedelta
 from functools import partial
 
+from app.errors import DeletedError, NotFoundError
 from app.experiments.exhibition import Exhibition
 from app.experiments.experiments import Experiments
 from app.experiments.files.cache import FileCache
@@ -11,7 +13,7 @@ from app.experiments.files.outputs import Outputs
 from app.experiments.files.renditions import Renditions
 from app.experiments.housekeeping import Housekeeping
 from app.experiments.meter import Meter
-from app.experiments.model import DEEP
+from app.experiments.model import DEEP, Snapshot
 from app.experiments.ports import BlobStore, Executor, ExperimentStore
 from app.experiments.retention import Retention
 from app.experiments.samples import Samples
@@ -50,7 +52,7 @@ class Service:
         #: Accepts or rejects experiments.
         self.submission = Submission(store, executor, self.samples, settings)
         #: Progress of experiments.
-        self.watching = Watching(store, executor)
+        self.watching = Watching(store, self._snapshots)
         #: Files of experiments, in every format and depth.
         self.outputs = Outputs(store, blobs, executor, self.renditions, self.watching, queue_limit=settings.queue_limit)
         #: When experiments go by themselves.
@@ -100,6 +102,17 @@ class Service:
     def waiting(self) -> int:
         """How many jobs wait."""
         return self._executor.waiting
+
+    def _snapshots(self, jobs: Collection[str]) -> Mapping[str, Snapshot]:
+        """Ask the engine here, and the store whether another process has finished what runs here."""
+        found = {job: snapshot for job in jobs if (snapshot := self._executor.snapshot(job)) is not None}
+        return {job: snapshot for job, snapshot in found.items() if DEEP in job or not self._is_over(job)}
+
+    def _is_over(self, experiment_id: str) -> bool:
+        try:
+            return self._store.get(experiment_id).status.finished
+        except (NotFoundError, DeletedError):
+            return True
 
     def _ended(self, job: str, failure: str | None) -> None:
         """Record a failure of the worker itself; what a worker computed it has recorded."""

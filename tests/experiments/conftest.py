@@ -1,6 +1,7 @@
 """A service with the inline engine, real files and a real photograph."""
 
 import shutil
+import threading
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -9,8 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from app.experiments import watching
 from app.experiments.model import Experiment, Sample
 from app.experiments.service import Service
+from app.experiments.watching import Watching
 from app.images.png_writer import encode_png
 from app.methods.context import Context
 from app.methods.model import Picture
@@ -21,6 +24,7 @@ from app.store.sql import SqlStore
 from app.worker import run_job
 from tests.executor.inline import InlineExecutor
 from tests.experiments.jobs import Breaking, submit
+from tests.experiments.watched import PATIENCE, Backend, Clock, Follow
 
 OPERATOR = "the operator's own token"
 
@@ -124,3 +128,23 @@ def broken(monkeypatch: pytest.MonkeyPatch) -> Breaking:
         monkeypatch.setitem(METHODS, "rpn", replace(original, run=failing))
 
     return breaking
+
+
+@pytest.fixture
+def follow(monkeypatch: pytest.MonkeyPatch) -> Iterator[Follow]:
+    """Watch a backend, with pauses of milliseconds; afterwards nobody waits any more, and no thread is left."""
+    monkeypatch.setattr(watching, "datetime", Clock)
+    monkeypatch.setattr(watching, "POLL_SECONDS", 0.002)
+    monkeypatch.setattr(watching, "REPEAT_SECONDS", PATIENCE)
+    made: list[Watching] = []
+
+    def watch(backend: Backend) -> Watching:
+        made.append(Watching(backend, backend.states))  # type: ignore[arg-type] # as much of a store as is asked
+        return made[-1]
+
+    yield watch
+    assert [each._watched for each in made] == [{}] * len(made)
+    for thread in threading.enumerate():
+        if thread.name == "watching":
+            thread.join(PATIENCE)
+            assert not thread.is_alive()

@@ -1,75 +1,32 @@
-"""Snapshots say how far an experiment is, changes are sent once, and whoever waits is woken or gives up."""
+"""Snapshots say how far an experiment is; changes are told once, by one poll for all who watch."""
 
 import asyncio
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from datetime import UTC, datetime, timedelta, tzinfo
-from typing import Any, Self
+from datetime import timedelta
+from typing import Any
 
 import pytest
 
-from app.errors import NotFoundError
+from app.errors import DeletedError, NotFoundError
 from app.experiments import watching
 from app.experiments.model import Experiment, Snapshot, Status
 from app.experiments.watching import Watching
-from tests.store.records import a_sample, an_experiment
-
-NOW = datetime(2026, 3, 1, 12, tzinfo=UTC)
-PATIENCE = 20.0
-JOB = "job"
-RUNNING = Snapshot(Status.RUNNING, fraction=0.25, stage="spot", elapsed=1.5)
-QUEUED = an_experiment(a_sample(), id=JOB, created_at=NOW - timedelta(hours=1))
-
-
-class Clock(datetime):
-    @classmethod
-    def now(cls, tz: tzinfo | None = None) -> Self:
-        return cls.fromtimestamp(NOW.timestamp(), tz)
-
-
-class Engine:
-    """An executor that knows what it is told, and notes how often it is asked."""
-
-    def __init__(self, *snapshots: Snapshot | None) -> None:
-        self.snapshots = list(snapshots)
-        self.asked = 0
-
-    def snapshot(self, job: str) -> Snapshot | None:
-        assert job == JOB
-        self.asked += 1
-        return self.snapshots.pop(0) if len(self.snapshots) > 1 else self.snapshots[0]
-
-
-class Records:
-    """A store with one experiment, in the states that follow one another."""
-
-    def __init__(self, *states: Experiment) -> None:
-        self.states = list(states)
-        self.asked = 0
-
-    def get(self, experiment_id: str) -> Experiment:
-        assert experiment_id == JOB
-        self.asked += 1
-        return self.states.pop(0) if len(self.states) > 1 else self.states[0]
-
-
-@pytest.fixture
-def following(monkeypatch: pytest.MonkeyPatch) -> Callable[..., Watching]:
-    """Watch a store and an engine, with pauses of milliseconds."""
-    monkeypatch.setattr(watching, "datetime", Clock)
-    monkeypatch.setattr(watching, "POLL_SECONDS", 0.002)
-    monkeypatch.setattr(watching, "UPDATE_SECONDS", 0.001)
-
-    def follow(records: Any, engine: Any) -> Watching:
-        return Watching(records, engine)
-
-    return follow
-
-
-def ended(status: Status, **values: Any) -> Experiment:
-    return replace(QUEUED, status=status, **values)
-
+from tests.experiments.watched import (
+    END,
+    JOB,
+    NOW,
+    PATIENCE,
+    QUEUED,
+    RUNNING,
+    SUCCEEDED,
+    WAITING,
+    Backend,
+    Follow,
+    ended,
+    run,
+)
 
 # Snapshots
 
@@ -95,154 +52,176 @@ def ended(status: Status, **values: Any) -> Experiment:
     ids=lambda value: value.status if isinstance(value, Experiment) else None,
 )
 def test_a_snapshot_of_the_store_says_how_far_it_is_and_for_how_long_it_ran(
-    following: Callable[..., Watching], experiment: Experiment, expected: Snapshot
+    follow: Follow, experiment: Experiment, expected: Snapshot
 ) -> None:
-    assert following(Records(experiment), Engine(None)).snapshot(JOB) == expected
+    assert follow(Backend(None, experiment)).snapshot(JOB) == expected
 
 
-def test_a_snapshot_of_the_engine_goes_before_the_stores(following: Callable[..., Watching]) -> None:
-    records = Records(QUEUED)
-    assert following(records, Engine(RUNNING)).snapshot(JOB) is RUNNING
-    assert records.asked == 0
+def test_a_snapshot_of_the_queue_goes_before_the_stores(follow: Follow) -> None:
+    backend = Backend(RUNNING)
+    assert follow(backend).snapshot(JOB) is RUNNING
+    assert backend.reads == []
 
 
 # Watching
 
 
-def watched(watch: Watching) -> list[Snapshot]:
-    async def collect() -> list[Snapshot]:
-        return [snapshot async for snapshot in watch.watch(JOB)]
-
-    return asyncio.run(asyncio.wait_for(collect(), PATIENCE))
-
-
-SUCCEEDED = ended(Status.SUCCEEDED, started_at=NOW - timedelta(seconds=3), finished_at=NOW)
-END = Snapshot(Status.SUCCEEDED, fraction=1.0, elapsed=3.0)
-
-
-def test_a_state_that_did_not_change_is_not_sent_again(following: Callable[..., Watching]) -> None:
-    """The seconds go on all the time, and are no change."""
-    waiting = Snapshot(Status.QUEUED, position=2, elapsed=0.0)
-    half = replace(RUNNING, fraction=0.5)
-    states = [waiting, replace(waiting, elapsed=1.0), RUNNING, replace(RUNNING, elapsed=2.5), half, half, RUNNING, None]
-    records = Records(*[ended(Status.RUNNING)] * (len(states) - 2), SUCCEEDED)
-    assert watched(following(records, Engine(*states))) == [waiting, RUNNING, half, RUNNING, END]
+async def collected(watch: Watching, steps: Sequence[Callable[[], object]]) -> list[Snapshot | None]:
+    """What is yielded, where after each of them the next thing happens."""
+    seen = []
+    todo = iter(steps)
+    async for snapshot in watch.watch(JOB):
+        seen.append(snapshot)
+        next(todo, lambda: None)()
+    return seen
 
 
 @pytest.mark.parametrize("change", [{"position": 1}, {"fraction": 0.1}, {"stage": "spot"}, {"status": Status.RUNNING}])
-def test_every_change_is_sent(following: Callable[..., Watching], change: dict[str, Any]) -> None:
-    first = Snapshot(Status.QUEUED, position=2)
-    seen = watched(following(Records(QUEUED, SUCCEEDED), Engine(first, replace(first, **change), None)))
-    assert seen == [first, replace(first, **change), END]
+def test_every_change_is_told(follow: Follow, change: dict[str, Any]) -> None:
+    backend, other = Backend(WAITING), replace(WAITING, **change)
+    steps = [lambda: backend.queue.update({JOB: other}), backend.finish]
+    assert run(collected(follow(backend), steps)) == [WAITING, other, END]
 
 
-def test_watching_ends_with_the_finished_state_and_sends_it_once(following: Callable[..., Watching]) -> None:
-    assert watched(following(Records(SUCCEEDED), Engine(None))) == [END]
+def test_a_state_that_did_not_change_is_not_told_again(follow: Follow) -> None:
+    """The seconds go on all the time, and are no change."""
+    backend = Backend(RUNNING)
+
+    async def seen() -> list[Snapshot | None]:
+        snapshots = follow(backend).watch(JOB)
+        told = [await anext(snapshots)]
+        backend.queue[JOB] = replace(RUNNING, elapsed=2.5)
+        await backend.looked(4)
+        backend.queue[JOB] = half = replace(RUNNING, fraction=0.5)
+        told.append(await anext(snapshots))
+        assert told[-1] is half
+        backend.finish()
+        return told + [snapshot async for snapshot in snapshots]
+
+    assert run(seen()) == [RUNNING, replace(RUNNING, fraction=0.5), END]
 
 
-def test_an_end_that_another_process_brings_about_is_noticed(following: Callable[..., Watching]) -> None:
-    """The engine here still has the job; nobody notifies."""
-    records = Records(ended(Status.RUNNING), ended(Status.RUNNING), SUCCEEDED)
-    assert watched(following(records, Engine(RUNNING))) == [RUNNING, END]
+def test_a_state_that_stays_is_told_again_after_a_while(follow: Follow, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A page knows by it that events come through."""
+    monkeypatch.setattr(watching, "REPEAT_SECONDS", 0.01)
+    backend, later = Backend(RUNNING), replace(RUNNING, elapsed=9.0)
+    steps = [lambda: backend.queue.update({JOB: later}), backend.finish]
+    assert run(collected(follow(backend), steps)) == [RUNNING, later, END]
 
 
-def test_the_end_of_a_deleted_experiment_is_an_error(following: Callable[..., Watching]) -> None:
-    class Gone:
-        def get(self, experiment_id: str) -> Experiment:
-            raise NotFoundError("There is no such experiment.")
-
-    watch = following(Gone(), Engine(RUNNING, None))
-    with pytest.raises(NotFoundError, match="There is no such experiment"):
-        watched(watch)
-    assert watch._listeners == {}
+def test_watching_ends_with_the_finished_state_and_tells_it_once(follow: Follow) -> None:
+    assert run(collected(follow(Backend(None, SUCCEEDED)), [])) == [END]
 
 
-# Waiting
+@pytest.mark.parametrize("error", [NotFoundError("There is none."), DeletedError("It was deleted.")])
+def test_the_end_of_a_deleted_experiment_is_an_error(follow: Follow, error: NotFoundError | DeletedError) -> None:
+    backend = Backend(RUNNING)
+    with pytest.raises(type(error), match=error.message):
+        run(collected(follow(backend), [lambda: backend.finish(error)]))
 
 
-def waited(watch: Watching, seconds: float) -> Experiment:
-    return asyncio.run(asyncio.wait_for(watch.wait(JOB, seconds), PATIENCE))
+def test_all_who_wait_are_served_by_one_look(follow: Follow) -> None:
+    """400 watchers of a job, and one of each of 20 others: a look asks for 21 jobs at once, and reads an end once."""
+    others = [f"other-{number}" for number in range(20)]
+    backend = Backend(RUNNING)
+    backend.queue |= dict.fromkeys(others, WAITING)
+
+    async def told() -> tuple[int, list[Snapshot | None]]:
+        watch = follow(backend)
+        streams = [watch.watch(job) for job in [JOB] * 400 + others]
+        await asyncio.gather(*map(anext, streams))
+        while backend.looks[-1] != {JOB, *others}:
+            await asyncio.sleep(0.001)
+        assert len([thread for thread in threading.enumerate() if thread.name == "watching"]) == 1
+        backend.finish()
+        ends = await asyncio.gather(*map(anext, streams[:400]))
+        reads = len(backend.reads)
+        for stream in streams:
+            await stream.aclose()
+        return reads, ends
+
+    reads, ends = run(told())
+    assert reads == 1
+    assert ends == [END] * 400
+    assert len({id(end) for end in ends}) == 1
 
 
-def test_waiting_returns_what_has_finished_at_once(following: Callable[..., Watching]) -> None:
-    assert waited(following(Records(SUCCEEDED), Engine(None)), 0) is SUCCEEDED
+def test_who_is_slow_gets_the_newest_state_and_not_all(follow: Follow) -> None:
+    backend = Backend(RUNNING)
+
+    async def seen() -> list[Snapshot | None]:
+        snapshots = follow(backend).watch(JOB)
+        told = [await anext(snapshots)]
+        for fraction in (0.3, 0.4, 0.5, 0.6):
+            backend.queue[JOB] = replace(RUNNING, fraction=fraction)
+            await backend.looked()
+        told.append(await anext(snapshots))
+        backend.finish()
+        return told + [snapshot async for snapshot in snapshots]
+
+    assert run(seen()) == [RUNNING, replace(RUNNING, fraction=0.6), END]
 
 
-def test_waiting_returns_what_is_not_finished_when_its_time_is_over(following: Callable[..., Watching]) -> None:
-    running = ended(Status.RUNNING)
-    assert waited(following(Records(running), Engine(RUNNING)), 0.01) is running
-
-
-def test_waiting_returns_an_end_that_another_process_brings_about(following: Callable[..., Watching]) -> None:
-    records = Records(ended(Status.RUNNING), SUCCEEDED)
-    assert waited(following(records, Engine(RUNNING)), float("inf")) is SUCCEEDED
-
-
-def test_who_waits_is_woken_from_another_thread(
-    following: Callable[..., Watching], monkeypatch: pytest.MonkeyPatch
+def test_a_notice_tells_another_status_at_once_and_progress_in_turn(
+    follow: Follow, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Not at the next look at the store, which never comes here."""
+    """Here its turn never comes: notices alone would send an event for each of hundreds of them."""
     monkeypatch.setattr(watching, "POLL_SECONDS", PATIENCE)
-    engine = Engine(RUNNING)
-    watch = following(Records(SUCCEEDED), engine)
+    backend, done = Backend(WAITING), replace(RUNNING, fraction=0.9)
 
-    async def woken() -> Experiment:
-        waiting = asyncio.ensure_future(watch.wait(JOB, float("inf")))
-        while not engine.asked:
-            await asyncio.sleep(0)
-        engine.snapshots = [None]
-        thread = threading.Thread(target=watch.notify, args=(JOB,))
-        thread.start()
-        found = await asyncio.wait_for(waiting, PATIENCE / 2)
-        thread.join()
+    async def seen() -> list[Snapshot | None]:
+        watch = follow(backend)
+        snapshots = watch.watch(JOB)
+        told = [await anext(snapshots)]
+        for state in (replace(WAITING, position=1), RUNNING, done):
+            backend.queue[JOB] = state
+            looks = len(backend.looks)
+            watch.notify(JOB)
+            while len(backend.looks) == looks:
+                await asyncio.sleep(0.001)
+            if state.status is not WAITING.status and len(told) == 1:
+                told.append(await anext(snapshots))
+        backend.finish()
+        watch.notify(JOB)
+        told += [snapshot async for snapshot in snapshots]
+        monkeypatch.undo()
+        return told
+
+    assert run(seen()) == [WAITING, RUNNING, END]
+
+
+def test_who_comes_while_others_watch_is_told_at_once(follow: Follow, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(watching, "POLL_SECONDS", PATIENCE)
+    backend = Backend(RUNNING)
+
+    async def told() -> Snapshot | None:
+        watch = follow(backend)
+        first, second = watch.watch(JOB), watch.watch(JOB)
+        await anext(first)
+        found = await anext(second)
+        for stream in (first, second):
+            await stream.aclose()
         return found
 
-    assert asyncio.run(woken()) is SUCCEEDED
-    assert watch._listeners == {}
+    assert run(told()) is RUNNING
+    assert backend.looks == [{JOB}]
 
 
-@pytest.mark.parametrize(
-    ("snapshots", "left"), [((RUNNING, RUNNING, None), True), ((None,), True), ((RUNNING,), False)]
-)
-def test_waiting_for_a_job_to_leave_says_whether_it_did(
-    following: Callable[..., Watching], snapshots: tuple[Snapshot | None, ...], left: bool
-) -> None:
-    watch = following(Records(QUEUED), Engine(*snapshots))
-    assert asyncio.run(asyncio.wait_for(watch.wait_until_left(JOB, 0.05), PATIENCE)) is left
-    assert watch._listeners == {}
+def test_a_job_that_ended_and_is_made_again_is_looked_at_again(follow: Follow) -> None:
+    """Somebody who has not yet heard of its end keeps nobody from seeing what became of it since."""
+    backend = Backend(RUNNING)
 
+    async def told() -> Snapshot | None:
+        watch = follow(backend)
+        slow, quick = watch.watch(JOB), watch.watch(JOB)
+        await anext(slow)
+        backend.finish()
+        assert [snapshot async for snapshot in quick][-1] == END
+        backend.queue[JOB] = WAITING
+        late = watch.watch(JOB)
+        found = await anext(late)
+        for stream in (slow, late):
+            await stream.aclose()
+        return found
 
-def test_one_whose_event_loop_is_closed_keeps_nobody_from_being_woken(following: Callable[..., Watching]) -> None:
-    watch = following(Records(QUEUED), Engine(RUNNING))
-    dead, alive = asyncio.new_event_loop(), asyncio.new_event_loop()
-    dead.close()
-    events = {loop: asyncio.Event() for loop in (dead, alive)}
-    watch._listeners[JOB] = set(events.items())
-    watch.notify(JOB)
-    alive.run_until_complete(asyncio.wait_for(events[alive].wait(), PATIENCE))
-    alive.close()
-
-
-def test_notifying_of_a_job_that_nobody_waits_for_does_nothing(following: Callable[..., Watching]) -> None:
-    following(Records(QUEUED), Engine(RUNNING)).notify("another")
-
-
-@pytest.mark.parametrize("turns", range(8))
-def test_who_gives_up_while_the_job_moves_stops_waiting(turns: int) -> None:
-    """Whatever the event loop does between the two, the cancellation is not lost."""
-
-    async def given_up() -> bool:
-        watch = Watching(Records(QUEUED), Engine(RUNNING))  # type: ignore[arg-type] # as much of them as is asked
-        waiting = asyncio.ensure_future(watch.wait(JOB, float("inf")))
-        for _ in range(8):
-            await asyncio.sleep(0)
-        watch.notify(JOB)
-        for _ in range(turns):
-            await asyncio.sleep(0)
-        waiting.cancel()
-        await asyncio.wait({waiting}, timeout=20)
-        gone = waiting.cancelled()
-        waiting.cancel()
-        return gone
-
-    assert asyncio.run(given_up())
+    assert run(told()) == WAITING

@@ -1,6 +1,7 @@
 """Experiments of the REST API, ``/api/v1/experiments``: submit, read, list, change, cancel and delete."""
 
 import re
+from contextlib import suppress
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Header, Path, Query, Request
@@ -9,7 +10,7 @@ from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 from starlette.responses import Response
 
-from app.errors import DeletedError, InvalidInputError, NotFoundError
+from app.errors import DeletedError, InvalidInputError, NotFoundError, UnavailableError
 from app.experiments.model import Experiment
 from app.experiments.preparation import NewExperiment, explain
 from app.experiments.service import Service
@@ -97,8 +98,11 @@ def require_json(request: Request) -> None:
 
 
 def record_of(request: Request, service: Service, experiment: Experiment) -> ExperimentRecord:
-    """Write the record, as of now."""
-    snapshot = None if experiment.status.finished else service.watching.snapshot(experiment.id)
+    """Write the record, as of now; without its progress where that cannot be read for now."""
+    snapshot = None
+    if not experiment.status.finished:
+        with suppress(UnavailableError):
+            snapshot = service.watching.snapshot(experiment.id)
     return ExperimentRecord.of(experiment, snapshot, base_url(request))
 
 
@@ -160,7 +164,8 @@ async def submit_experiment(
         raise InvalidInputError(error.message, "inputs") from None
     seconds = wait_seconds(prefer)
     if seconds is not None:
-        experiment = await unless_stopping(request, service.watching.wait(experiment.id, seconds)) or experiment
+        with suppress(UnavailableError):  # it is accepted all the same
+            experiment = await unless_stopping(request, service.watching.wait(experiment.id, seconds)) or experiment
         response.headers["Preference-Applied"] = f"wait={seconds}"
     record = await run_in_threadpool(record_of, request, service, experiment)
     response.status_code = 201 if record.status.finished else 202

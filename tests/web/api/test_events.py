@@ -5,16 +5,19 @@ import signal
 import socket
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from types import SimpleNamespace
 from typing import cast
 
 import httpx
 import pytest
 
+from app.errors import DATABASE, UnavailableError
 from app.experiments.model import Snapshot, Status
 from app.experiments.service import Service
 from app.main import create_app
 from app.settings import ROOT, Settings
+from app.web.api.records import ProgressRecord
 
 
 def events(response):
@@ -29,12 +32,24 @@ def events(response):
             event[name] = json.loads(value) if name == "data" else value
 
 
+def following(watch):
+    """A service in which nothing can be done but watching."""
+    service = SimpleNamespace(
+        ready=True,
+        start=lambda: None,
+        close=lambda: None,
+        experiments=SimpleNamespace(get=lambda experiment_id: None),
+        watching=SimpleNamespace(watch=watch),
+    )
+    return cast(Service, service)
+
+
 def test_a_stream_follows_an_experiment_to_its_end(site):
     with site.gate.closed():
         url = site.run(wait=False).json()["url"]
         with site.client.stream("GET", f"{url}/events") as response:
             assert response.headers["Content-Type"].startswith("text/event-stream")
-            assert response.headers["Cache-Control"] == "no-cache"
+            assert response.headers["Cache-Control"] == "private, no-cache"
             stream = events(response)
             first = next(stream)
             assert first["retry"] == "2000"
@@ -66,14 +81,7 @@ def test_an_event_is_sent_for_every_change_and_says_all_of_it(serving, tmp_path)
         for snapshot in snapshots:
             yield snapshot
 
-    service = SimpleNamespace(
-        ready=True,
-        start=lambda: None,
-        close=lambda: None,
-        experiments=SimpleNamespace(get=lambda experiment_id: None),
-        watching=SimpleNamespace(watch=watch),
-    )
-    with serving(create_app(Settings(data_dir=tmp_path), cast(Service, service))) as url:
+    with serving(create_app(Settings(data_dir=tmp_path), following(watch))) as url:
         told = list(events(httpx.get(f"{url}/api/v1/experiments/x/events")))
     assert [(event["id"], event["event"], tuple(event["data"].values())) for event in told] == [
         ("1", "progress", ("queued", 2, 0.0, None, 0.0)),
@@ -87,6 +95,87 @@ def test_an_event_is_sent_for_every_change_and_says_all_of_it(serving, tmp_path)
     ]
     assert list(told[0]["data"]) == ["status", "position", "progress", "stage", "elapsed"]
     assert [event.get("retry") for event in told] == ["2000"] + [None] * 7
+
+
+def test_what_is_written_of_a_state_is_written_once_for_all_streams(serving, tmp_path, monkeypatch):
+    written = []
+    write = ProgressRecord.of
+
+    def note(snapshot):
+        written.append(snapshot)
+        return write(snapshot)
+
+    monkeypatch.setattr(ProgressRecord, "of", note)
+    snapshots = [Snapshot(Status.RUNNING, fraction=0.123, elapsed=5.5), Snapshot(Status.FAILED, elapsed=6.5)]
+
+    async def watch(experiment_id):
+        for snapshot in snapshots:
+            yield snapshot
+
+    with serving(create_app(Settings(data_dir=tmp_path), following(watch))) as url:
+        streams = [httpx.get(f"{url}/api/v1/experiments/x/events").content for _ in range(5)]
+    assert written == snapshots
+    assert streams == [streams[0]] * 5
+
+
+def test_a_comment_keeps_a_stream_alive_of_which_nothing_is_known(serving, tmp_path):
+    async def watch(experiment_id):
+        yield None
+        yield Snapshot(Status.SUCCEEDED, fraction=1.0)
+
+    with serving(create_app(Settings(data_dir=tmp_path), following(watch))) as url:
+        response = httpx.get(f"{url}/api/v1/experiments/x/events")
+    assert response.text.startswith(": ")
+    assert [event["event"] for event in events(response)] == ["progress", "status"]
+
+
+def test_an_experiment_that_is_deleted_ends_its_streams(site):
+    """They end without an event, for there is none of it: who connects again is told why."""
+    with site.gate.closed():
+        url = site.run(wait=False).json()["url"]
+        with site.client.stream("GET", f"{url}/events") as response:
+            stream = events(response)
+            next(stream)
+            site.service.experiments.discard(site.service.experiments.get(url.rsplit("/", 1)[1]))
+            assert {event["data"]["status"] for event in stream} <= {"queued", "running", "cancelled"}
+        assert site.client.get(f"{url}/events").status_code == 410
+
+
+def test_a_database_that_is_away_ends_no_stream(site, monkeypatch, until):
+    """Nor a request that waits for what was accepted: once the database is back, both hear of the end."""
+    watching = site.service.watching
+    source, looks = watching._source, []
+
+    def away(jobs):
+        looks.append(jobs)
+        raise UnavailableError(DATABASE, "The database is away.")
+
+    with site.visitor() as other, site.gate.closed(), ThreadPoolExecutor() as threads:
+        url = site.run(wait=False).json()["url"]
+        with site.client.stream("GET", f"{url}/events") as response:
+            stream = events(response)
+            next(stream)
+            waiting = threads.submit(site.run, client=other)
+            until(lambda: len(watching._watched) == 2)
+            monkeypatch.setattr(watching, "_source", away)
+            until(lambda: len(looks) > 2)
+            monkeypatch.setattr(watching, "_source", source)
+            site.gate.open()
+            assert list(stream)[-1]["data"]["status"] == "succeeded"
+        assert waiting.result().status_code == 201
+
+
+def test_an_experiment_that_was_accepted_is_answered_though_the_database_goes(site, monkeypatch):
+    """Else it would be sent once more."""
+
+    def away(*arguments):
+        raise UnavailableError(DATABASE, "The database is away.")
+
+    with site.visitor() as other, site.gate.closed(), monkeypatch.context() as patch:
+        patch.setattr(site.service.watching, "_source", away)
+        patch.setattr(site.service.watching, "wait", away)
+        response = site.run(client=other)
+    assert (response.status_code, response.json()["status"]) == (202, "queued")
 
 
 def test_the_stream_of_a_finished_experiment_ends_at_once(site, experiment):
@@ -110,14 +199,14 @@ def test_cancelling_ends_the_stream(site, operator):
 
 
 def test_a_client_that_goes_is_followed_no_longer(site, until):
-    listeners = site.service.watching._listeners
+    watched = site.service.watching._watched
     with site.gate.closed():
         record = site.run(wait=False).json()
         with site.visitor() as client, client.stream("GET", f"{record['url']}/events") as response:
             stream = events(response)  # kept: an iterator that is dropped closes its connection
             next(stream)
-            until(lambda: record["id"] in listeners)
-        until(lambda: record["id"] not in listeners)
+            until(lambda: record["id"] in watched)
+        until(lambda: record["id"] not in watched)
 
 
 def test_head_of_a_stream_ends_at_once(site):
