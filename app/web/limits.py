@@ -100,8 +100,12 @@ class Limits:
             if full:
                 worst = max(full, key=self._wait)
                 wait = self._wait(worst)
-                words = f"This service takes {worst.item.amount} {worst.noun} {_per(worst.seconds)} from one {worst.of}"
-                raise QuotaError(f"{words}: wait {_duration(wait)}.", wait, self._fields(windows))
+                raise QuotaError(
+                    f"Wait {_duration(wait)}: this service takes at most {_count(worst.item.amount, worst.noun)} "
+                    f"{_per(worst.seconds)} from one {worst.of}.",
+                    wait,
+                    self._fields(windows),
+                )
             for window in windows:
                 self._limiter.hit(window.item, window.key)
             return self._fields(windows)
@@ -112,8 +116,8 @@ class Limits:
             if not self._limiter.test(window.item, window.key):
                 wait = self._wait(window)
                 raise QuotaError(
-                    f"Your uploads of the last day take {format_bytes(window.item.amount)} on this server's disk, for "
-                    f"they are stored without loss; one {window.of} has no more a day: wait {_duration(wait)}.",
+                    f"Wait {_duration(wait)}: your uploads of the last day take {format_bytes(window.item.amount)} on "
+                    f"this server's disk, where they are stored without loss, and one {window.of} has no more a day.",
                     wait,
                 )
 
@@ -133,8 +137,8 @@ class Limits:
                 most = share.factor * self._most_streams
                 if self._streams[key] >= most:
                     raise QuotaError(
-                        f"This service keeps {most} event streams open for one {share.of}: close another page, or read "
-                        "the record from time to time instead.",
+                        "Close another page, or read the record from time to time instead: this service keeps at most "
+                        f"{_count(most, 'event streams')} open for one {share.of}.",
                         STREAM_SECONDS,
                     )
             self._streams.update(keys.keys())
@@ -215,6 +219,18 @@ def remember(request: Request, fields: dict[str, str]) -> None:
 
 def _times(item: RateLimitItem, factor: int) -> RateLimitItem:
     return type(item)(item.amount * factor, item.multiples, item.namespace)
+
+
+def _count(number: int, noun: str) -> str:
+    """Number and noun, for which the plural is given.
+
+    Examples
+    --------
+    >>> _count(2, "views of samples"), _count(1, "views of samples")
+    ('2 views of samples', '1 view of samples')
+    """
+    singular = f"{noun} ".replace("s ", " ", 1).rstrip()
+    return f"{number} {noun if number != 1 else singular}"
 
 
 def _per(seconds: int) -> str:

@@ -27,6 +27,7 @@ test("the service's own reason is passed on, and final where it is about what wa
   for (const [status, final] of /** @type {const} */ ([
     [404, true],
     [422, true],
+    [429, false],
     [500, false],
     [503, false],
   ])) {

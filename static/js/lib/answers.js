@@ -69,7 +69,7 @@ export function read(status, text) {
     return record;
   }
   if (record && "detail" in record && typeof record.detail === "string") {
-    throw new Refusal(record.detail, status, status < 500); // our own problem+json
+    throw new Refusal(record.detail, status, status < 500 && status !== 429); // our own problem+json
   }
   const unexplained = `The service, or a proxy in front of it, answered ${status} without a reason: wait a minute, and try again.`;
   throw new Refusal(WORDS[status] ?? unexplained, status);
