@@ -32,6 +32,7 @@ from app.web.middleware.security_headers import SecurityHeaders
 from app.web.middleware.trusted_hosts import TrustedHosts
 from app.web.pages.errors import render_error
 from app.web.pages.routes import router as pages
+from app.web.request_id import RequestId
 from app.web.shutdown import on_stop_signal
 from app.worker import run_job
 
@@ -82,6 +83,7 @@ def create_app(settings: Settings | None = None, service: Service | None = None)
         lifespan=_lifespan,
         generate_unique_id_function=lambda route: route.name,
         middleware=[
+            Middleware(RequestId),
             Middleware(CountRequests, metrics=metrics),
             Middleware(SecurityHeaders),
             Middleware(BodyLimit, upload=settings.max_upload_bytes),

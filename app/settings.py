@@ -119,6 +119,7 @@ class Settings(BaseSettings):
     log_level: Literal["debug", "info", "warning", "error"] = Field(
         "info", description="The least that is logged: debug, info, warning or error."
     )
+    log_format: Literal["text", "json"] = Field("text", description="What a line of the log is: text or json.")
 
     @field_validator("limit_uploads", "limit_experiments", "limit_conversions", "limit_deep", "limit_views")
     @classmethod

@@ -46,6 +46,7 @@ def serve(
 
     from app.cli.settings import read_settings
     from app.samples import require_files
+    from app.web.logs import configuration
 
     with plain_errors():
         settings = read_settings()
@@ -59,7 +60,7 @@ def serve(
         factory=True,
         host=host,
         port=port,
-        log_level=settings.log_level,
+        log_config=configuration(settings.log_format, settings.log_level),
         proxy_headers=bool(forwarded_allow_ips),
         forwarded_allow_ips=forwarded_allow_ips or None,
         limit_concurrency=limit_concurrency,

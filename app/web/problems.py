@@ -15,6 +15,7 @@ from app import errors
 from app.methods.fields import reason
 from app.numbers import quote
 from app.web.headers import API_PREFIX, security_headers
+from app.web.request_id import HEADER, request_id
 
 MEDIA_TYPE = "application/problem+json"
 RETRY_SECONDS = 10
@@ -72,6 +73,8 @@ def problem(
 ) -> Response:
     """Make an ``application/problem+json`` answer; ``faults`` name the fields at fault: ``{"field", "message"}``."""
     body: dict[str, Any] = {"type": "about:blank", "title": title(status), "status": status, "detail": detail}
+    if identifier := request_id():
+        body["instance"] = f"urn:uuid:{identifier}"
     if faults:
         body["errors"] = [dict(fault) for fault in faults]
     return JSONResponse(body, status, {"Cache-Control": "no-store", **(headers or {})}, media_type=MEDIA_TYPE)
@@ -160,7 +163,9 @@ def _allowed_methods(request: Request) -> list[str]:
 async def _unexpected_error(request: Request, _error: Exception) -> Response:
     """Answer without internals (the server logs them), with the headers that no middleware adds to this answer."""
     path = request.scope["path"]
-    return respond(request, 500, _DETAILS[500], headers=dict(security_headers(path)))
+    identifier = {HEADER: request_id()}
+    words = f"{_DETAILS[500]} The log knows this request as {request_id()}."
+    return respond(request, 500, words, headers=dict(security_headers(path)) | identifier)
 
 
 async def _client_disconnected(_request: Request, _error: Exception) -> Response:

@@ -280,4 +280,5 @@ class Problem(BaseModel):
     title: str
     status: int
     detail: str = Field(description="What is wrong and what to do about it.")
+    instance: str = Field("", description="URN of the request; the service's log has the same id.")
     errors: list[Fault] = Field(default_factory=list, description="The fields at fault, where they are known.")
