@@ -6,13 +6,17 @@ makes tokens up gets no more than the address may.
 """
 
 import ipaddress
+import logging
 from dataclasses import dataclass
+from functools import lru_cache
 
 from fastapi import Request
 
 from app.experiments.queue_port import PLACE
 from app.experiments.tokens import token_digest
 from app.web.deps import is_operator, owner_token
+
+log = logging.getLogger(__name__)
 
 IPV6_PREFIX = 64  # what one household or machine is given
 LOCAL = "local"  # a socket of this machine has no address
@@ -54,9 +58,29 @@ class Client:
 def client_of(request: Request) -> Client:
     """Tell who sent a request; behind a trusted proxy the server has put the client's address in its place."""
     peer = request.client
+    forwarded = request.headers.get("x-forwarded-for", "")
+    if peer and forwarded and peer.host not in forwarded and _is_private(peer.host):
+        _warn(peer.host)  # were the header believed, one of its addresses were in the place of the proxy's
     token = owner_token(request)
     operator = token is not None and is_operator(request, token)
     return Client(network_of(peer.host if peer else ""), token and token_digest(token), operator)
+
+
+@lru_cache(maxsize=16)
+def _warn(proxy: str) -> None:
+    """Tell the operator, once of each proxy."""
+    log.warning(
+        "Requests come through a proxy at %s whose X-Forwarded-For is not believed: all of its visitors share the "
+        "limits of one. If it is yours, name it in MICROTEXTURE_FORWARDED_ALLOW_IPS.",
+        proxy,
+    )
+
+
+def _is_private(host: str) -> bool:
+    try:
+        return ipaddress.ip_address(host.partition("%")[0]).is_private
+    except ValueError:
+        return False
 
 
 def network_of(host: str) -> str:

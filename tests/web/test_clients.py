@@ -2,12 +2,15 @@
 
 import ipaddress
 
+import pytest
+from fastapi import FastAPI, Request
 from hypothesis import given
 from hypothesis import strategies as st
 
 from app.experiments.queue_port import PLACE
 from app.experiments.tokens import token_digest
-from app.web.clients import Client, network_of
+from app.settings import Settings
+from app.web.clients import Client, client_of, network_of
 
 
 @given(st.ip_addresses(v=4))
@@ -32,3 +35,21 @@ def test_the_queue_learns_digests_whose_first_part_is_the_address() -> None:
     assert len(set(names)) == 3
     assert {name[:PLACE] for name in names} == {names[2]}
     assert all("203" not in name or name.isalnum() for name in names)
+
+
+def test_a_proxy_that_is_not_believed_is_told_of_once(caplog: pytest.LogCaptureFixture) -> None:
+    """Else all of its visitors share the limits of one, and nobody knows why."""
+    app = FastAPI()
+    app.state.settings = Settings()
+
+    def asked(peer: str, forwarded: str) -> Client:
+        headers = [(b"x-forwarded-for", forwarded.encode())] if forwarded else []
+        return client_of(Request({"type": "http", "app": app, "headers": headers, "client": (peer, 1), "path": "/"}))
+
+    asked("10.9.8.7", "")
+    asked("10.9.8.6", "10.9.8.6, 10.9.8.5")  # believed: the server put it in the proxy's place
+    asked("8.8.8.8", "10.9.8.6")  # anybody may send it
+    assert caplog.text == ""
+    assert [asked("10.9.8.7", "8.8.8.8").address for _ in range(3)] == ["10.9.8.7"] * 3
+    assert caplog.text.count("MICROTEXTURE_FORWARDED_ALLOW_IPS") == 1
+    assert "10.9.8.7" in caplog.text

@@ -176,6 +176,25 @@ def test_the_operator_is_not_limited(limited: Any, operator: dict[str, str]) -> 
         assert {limited.run(client=visitor, wait=False).status_code for _ in range(9)} == {202}
 
 
+def test_behind_a_trusted_proxy_the_visitors_address_counts(
+    serve: Any, tmp_path: Any, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Of IPv6 its network. The test's server trusts the loopback, as a service does whose proxy is named."""
+    with serve(tmp_path, limits=True, limit_experiments="2/hour", limit_address=1) as site:
+
+        def status(address: str) -> int:
+            with site.visitor(headers={"X-Forwarded-For": address}) as visitor:
+                return int(site.run(client=visitor, wait=False).status_code)
+
+        same = ["203.0.113.7", "203.0.113.7", "203.0.113.7"]
+        assert [status(address) for address in same] == [202, 202, 429]
+        assert status("203.0.113.8") == 202
+        network = ["2001:db8:1:2::1", "2001:db8:1:2:ffff::2", "2001:db8:1:2:3:4:5:6"]
+        assert [status(address) for address in network] == [202, 202, 429]
+        assert status("2001:db8:1:3::1") == 202
+        assert "MICROTEXTURE_FORWARDED_ALLOW_IPS" not in caplog.text
+
+
 def test_event_streams_of_a_client_are_few_and_are_given_back(limited: Any, until: Any) -> None:
     with limited.gate.closed(), limited.visitor(headers=own()) as visitor:
         address = f"{limited.run(client=visitor, wait=False).json()['url']}/events"
