@@ -71,7 +71,7 @@ def create_app(settings: Settings | None = None, service: Service | None = None)
     keep_addresses_secret()
     if settings.operator_token is not None and len(settings.operator_token.get_secret_value()) < SAFE_TOKEN:
         log.warning("MICROTEXTURE_OPERATOR_TOKEN can be guessed: take at least %d random characters.", SAFE_TOKEN)
-    metrics = Metrics(service)
+    metrics = Metrics(service, settings.data_dir)
     app = FastAPI(
         title="Microtexture",
         summary="Texture synthesis by example",

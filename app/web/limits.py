@@ -20,6 +20,7 @@ from app.errors import QuotaError
 from app.settings import Settings
 from app.web.clients import Client, client_of
 from app.web.middleware.body_limit import format_bytes
+from app.web.middleware.metrics import Metrics
 from app.web.windows import MonotonicWindows
 
 UPLOADS, EXPERIMENTS, CONVERSIONS = "uploads", "experiments", "conversions"
@@ -196,6 +197,7 @@ def take(request: Request, kind: str) -> None:
         fields = limits.take(kind, client_of(request))
     except QuotaError as error:
         remember(request, error.fields)
+        cast(Metrics, request.app.state.metrics).limited.labels(kind).inc()
         raise
     remember(request, fields)
 

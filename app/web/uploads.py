@@ -15,12 +15,13 @@ from python_multipart.multipart import MultipartParser, parse_options_header
 from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 
-from app.errors import TooLargeError
+from app.errors import AppError, TooLargeError
 from app.experiments.model import Sample
 from app.web.clients import client_of
 from app.web.deps import get_service, get_settings, in_upload_thread
 from app.web.limits import Limits
 from app.web.middleware.body_limit import format_bytes
+from app.web.middleware.metrics import Metrics
 
 if TYPE_CHECKING:
     from python_multipart.multipart import MultipartCallbacks
@@ -189,7 +190,12 @@ async def _read(
 async def add_sample(request: Request, path: Path, owner: str | None) -> Sample:
     """Make a sample of a received file; what it takes on the disk counts for the client."""
     service = get_service(request)
-    sample = await in_upload_thread(request, service.samples.add, path, owner)
+    try:
+        sample = await in_upload_thread(request, service.samples.add, path, owner)
+    except AppError as error:
+        reason = type(error).__name__.removesuffix("Error")
+        cast(Metrics, request.app.state.metrics).refused.labels(reason).inc()
+        raise
     limits = cast(Limits, request.app.state.limits)
     limits.count_bytes(client_of(request), await run_in_threadpool(service.samples.stored_bytes, sample))
     return sample

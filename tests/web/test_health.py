@@ -1,5 +1,6 @@
 """``/healthz``, ``/readyz`` and ``/metrics``."""
 
+import shutil
 import threading
 from typing import cast
 
@@ -97,3 +98,27 @@ def test_experiments_and_the_queue_are_told(site, experiment, until):
         assert found["microtexture_queue_length",] == 1
         assert found["microtexture_ready",] == 1
         assert found["microtexture_experiments", ("status", "succeeded")] >= 1
+
+
+def test_the_disk_and_the_cache_are_told(site):
+    site.client.get("/api/v1/samples/gravel_gray/image?size=256")
+    found = metrics(site)
+    kept = sum(path.stat().st_size for path in (site.settings.data_dir / "cache").iterdir())
+    assert found["microtexture_cache_bytes",] == kept > 0
+    free = shutil.disk_usage(site.settings.data_dir).free
+    assert 0.5 < found["microtexture_disk_free_bytes",] / free < 2
+
+
+def test_refused_uploads_are_counted_by_reason(site):
+    name = ("microtexture_refused_uploads_total", ("reason", "UnsupportedFormat"))
+    before = metrics(site).get(name, 0)
+    assert site.client.post("/api/v1/samples", files={"file": ("notes.txt", b"Not a picture.")}).status_code == 415
+    assert metrics(site)[name] == before + 1
+
+
+def test_requests_beyond_a_share_are_counted_by_kind(serve, tmp_path):
+    token = {"Authorization": f"Bearer {32 * 'x'}"}
+    with serve(tmp_path, limits=True, limit_experiments="1/hour") as site, site.visitor(headers=token) as visitor:
+        answers = [site.run(wait=False, client=visitor).status_code for _ in range(3)]
+        assert answers == [202, 429, 429]
+        assert metrics(site)["microtexture_limited_requests_total", ("kind", "experiments")] == 2

@@ -1,7 +1,11 @@
 """Prometheus metrics: counts and durations of requests, and the state of the service."""
 
+import os
+import shutil
 import time
 from collections.abc import Iterable
+from contextlib import suppress
+from pathlib import Path
 
 from prometheus_client import CollectorRegistry, Counter, Histogram, ProcessCollector, generate_latest
 from prometheus_client.core import GaugeMetricFamily
@@ -13,6 +17,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from app.experiments.model import Status
 from app.experiments.service import Service
 
+CACHE = "cache"  # beside the files, as `Service` has it
 _METHODS = {"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"}
 _BUCKETS = (0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1, 2.5, 5, 10, 30, 60)
 
@@ -33,12 +38,27 @@ class _ServiceCollector(Collector):
         yield GaugeMetricFamily("microtexture_ready", "1 if experiments can run.", int(self.service.ready))
 
 
+class _DiskCollector(Collector):
+    def __init__(self, data_dir: Path) -> None:
+        self.data_dir = data_dir
+
+    def collect(self) -> Iterable[Metric]:
+        with suppress(OSError):  # a disk that is away has no figures, and takes none of the others with it
+            free = shutil.disk_usage(self.data_dir).free
+            yield GaugeMetricFamily("microtexture_disk_free_bytes", "Room left where the data lie.", free)
+        with suppress(OSError):
+            cached = [entry.stat().st_size for entry in os.scandir(self.data_dir / CACHE) if entry.is_file()]
+            yield GaugeMetricFamily(
+                "microtexture_cache_bytes", "Room that files take which can be made again.", sum(cached)
+            )
+
+
 class Metrics:
     """The counters of one application, in a registry of its own."""
 
     content_type = CONTENT_TYPE_PLAIN_0_0_4
 
-    def __init__(self, service: Service) -> None:
+    def __init__(self, service: Service, data_dir: Path) -> None:
         self.registry = CollectorRegistry()
         self.requests = Counter(
             "microtexture_http_requests",
@@ -53,7 +73,20 @@ class Metrics:
             registry=self.registry,
             buckets=_BUCKETS,
         )
+        self.limited = Counter(
+            "microtexture_limited_requests",
+            "Requests beyond a client's share, by what was asked for.",
+            ["kind"],
+            registry=self.registry,
+        )
+        self.refused = Counter(
+            "microtexture_refused_uploads",
+            "Uploads that could not be taken in, by reason.",
+            ["reason"],
+            registry=self.registry,
+        )
         self.registry.register(_ServiceCollector(service))
+        self.registry.register(_DiskCollector(data_dir))
         ProcessCollector(registry=self.registry)
 
     def text(self) -> bytes:
