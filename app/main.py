@@ -16,6 +16,7 @@ from app.experiments.service import Service
 from app.samples import require_files
 from app.settings import ROOT, Settings
 from app.store.blobs import FileBlobs
+from app.store.queue import SqlQueue
 from app.store.sql import SqlStore
 from app.synthesis import __version__
 from app.web import health, problems, uploads
@@ -33,7 +34,7 @@ from app.web.middleware.trusted_hosts import TrustedHosts
 from app.web.pages.errors import render_error
 from app.web.pages.routes import router as pages
 from app.web.request_id import RequestId
-from app.web.shutdown import on_stop_signal
+from app.web.shutdown import end_if_given_up, give_up, on_stop_signal
 from app.worker import run_job
 
 log = logging.getLogger(__name__)
@@ -46,8 +47,13 @@ def build_service(settings: Settings) -> Service:
     """Make the service with the backends that the settings name; its `start` begins work."""
     settings.data_dir.mkdir(parents=True, exist_ok=True)
     store = SqlStore(settings.sql_url)
-    blobs = FileBlobs(settings.data_dir / "files")
-    return Service(store, blobs, DaskExecutor(settings, run_job), settings)
+    queue, blobs = SqlQueue(store.database), FileBlobs(settings.data_dir / "files", settings.min_free_bytes)
+
+    def probe() -> None:
+        store.ping()
+        blobs.probe()
+
+    return Service(store, queue, blobs, DaskExecutor(settings, run_job, queue, probe, give_up), settings)
 
 
 def create_app(settings: Settings | None = None, service: Service | None = None) -> FastAPI:
@@ -119,9 +125,10 @@ async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     with on_stop_signal(lambda: loop.call_soon_threadsafe(stopping.set)):
         yield
     stopping.set()
+    await asyncio.to_thread(service.close)  # first: a start that waits for the engine then ends
     with suppress(Exception):
         await starting
-    await asyncio.to_thread(service.close)
+    end_if_given_up()
 
 
 def _log_failure(starting: asyncio.Task[None]) -> None:

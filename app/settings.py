@@ -35,6 +35,10 @@ class Settings(BaseSettings):
     )
     samples_dir: Path = Field(ROOT / "samples", description="Directory of the bundled photographs and their catalogue.")
 
+    min_free_bytes: int = Field(
+        256 * MEBIBYTE, ge=0, le=MOST, description="Room left on the disk below which nothing more is taken in."
+    )
+
     # Engine
     scheduler: str | None = Field(
         None, description="Address of a Dask scheduler (tcp://…); default: processes of ours."

@@ -4,15 +4,19 @@ from functools import lru_cache
 from pathlib import Path
 
 from app.experiments import run
-from app.methods.context import Progress
+from app.experiments.model import Lease
 from app.settings import Settings
 from app.store.blobs import FileBlobs
+from app.store.queue import SqlQueue
 from app.store.sql import SqlStore
 
 
-def run_job(settings: Settings, job: str, progress: Progress) -> None:
+def run_job(settings: Settings, lease: Lease) -> None:
     """Run one job with the store and the files that the settings name; they stay open for the next one."""
-    run.run_job(_store(settings.sql_url), _blobs(settings.data_dir / "files"), job, progress, threads=settings.threads)
+    store = _store(settings.sql_url)
+    blobs = _blobs(settings.data_dir / "files")
+    queue = SqlQueue(store.database)
+    run.run_job(store, queue, blobs, lease, threads=settings.threads, time_limit=settings.time_limit)
 
 
 @lru_cache(maxsize=4)

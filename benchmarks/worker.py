@@ -11,16 +11,20 @@ import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
 import psutil
 
 from app.executor.dask import DaskExecutor
-from app.methods.context import Context, Progress
+from app.experiments.model import DEEP, Lease
+from app.methods.context import Context
 from app.methods.model import Source
 from app.methods.registry import method
 from app.settings import Settings
+from app.store.queue import SqlQueue
+from app.store.sql import SqlStore
 from benchmarks.kernel import MEGABYTE, sample
 
 SIDE = 512  # of the sample
@@ -28,6 +32,7 @@ RATIO_AIM = 1.15
 FAULTS_AIM = 1000  # at 512²
 ROUNDS = {512: 15, 1024: 9, 4096: 5}
 PATIENCE = 120.0
+SUFFIX = f"{DEEP}texture"  # the name of a job that has no record of its own
 
 
 class Measured(NamedTuple):
@@ -56,11 +61,18 @@ def measure(side: int, threads: int, everything: bool) -> Measured:
     return Measured(seconds, faults, psutil.Process().pid)
 
 
-def run(settings: Settings, job: str, progress: Progress) -> None:
+def run(settings: Settings, lease: Lease) -> None:
     """Measure in a worker, and leave the result in the data directory under the job's name."""
-    _, side, what = job.split("-")
+    name = lease.job.removesuffix(SUFFIX)
+    _, side, what = name.split("-")
     measured = measure(int(side), settings.threads, what == "all")
-    (settings.data_dir / job).write_text(json.dumps(measured))
+    (settings.data_dir / name).write_text(json.dumps(measured))
+    queue_of(settings).finish(lease)
+
+
+@lru_cache
+def queue_of(settings: Settings) -> SqlQueue:
+    return SqlQueue(SqlStore(settings.sql_url).database)
 
 
 class Worker:
@@ -68,28 +80,38 @@ class Worker:
 
     def __init__(self, settings: Settings) -> None:
         self._settings, self._count = settings, 0
-        self._engine = DaskExecutor(settings, run)
+        self._queue = queue_of(settings)
+        self._engine = DaskExecutor(settings, run, self._queue, lambda: None)
 
     @contextmanager
     def open(self) -> Iterator["Worker"]:
         """Start the worker, and stop it in the end."""
-        self._engine.start(lambda job, failure: None)
+        self._engine.start(self)
         try:
             yield self
         finally:
             self._engine.close()
 
+    def fail(self, lease: Lease, error: str, cause: str | None = None) -> None:
+        """Take a failure of the engine: none is expected."""
+        raise RuntimeError(error)
+
+    def stopped(self, job: str) -> bool:
+        """Whether a job was cancelled: none is."""
+        return False
+
     def measure(self, side: int, everything: bool) -> Measured:
         """`measure` as a job."""
         self._count += 1
-        job = f"{self._count}-{side}-{'all' if everything else 'texture'}"
-        self._engine.submit(job)
+        name = f"{self._count}-{side}-{'all' if everything else 'texture'}"
+        self._queue.enqueue(name + SUFFIX, "benchmark")
+        self._engine.wake()
         until = time.monotonic() + PATIENCE
-        while self._engine.snapshot(job) is not None:
+        while self._queue.states([name + SUFFIX]):
             if time.monotonic() > until:
                 raise RuntimeError("The worker did not come to an end.")
             time.sleep(0.005)
-        return Measured(*json.loads((self._settings.data_dir / job).read_text()))
+        return Measured(*json.loads((self._settings.data_dir / name).read_text()))
 
 
 def compare(worker: Worker, side: int, threads: int, everything: bool) -> None:

@@ -15,14 +15,14 @@ from distributed.utils import get_mp_context
 
 from app.executor import tasks
 from app.executor.memory import MALLOC
+from app.experiments.model import Lease
 from app.experiments.ports import Run
 from app.settings import Settings
 
 log = logging.getLogger(__name__)
 
-CONNECT_SECONDS = 10.0
+CONNECT_SECONDS = 3.0  # a stop waits for it
 CLOSE_SECONDS = 5.0
-REMEMBERED = 1000  # jobs whose runs are counted: a scheduler forgets a run within milliseconds of its end
 LOOPBACK = "127.0.0.1"
 
 EMBEDDED = {
@@ -42,8 +42,6 @@ EMBEDDED = {
     "distributed.worker.memory.terminate": 0.95,
 }
 
-Event = Callable[[Mapping[str, Any]], None]
-
 
 class Engine:
     """A cluster and its client, once open. An engine that was lost is not mended: another one is opened.
@@ -53,15 +51,15 @@ class Engine:
     settings : Settings
     run : callable
         What the workers do with a job.
-    on_progress, on_workers : callable
-        Called from the client's event loop with what a worker reports, and when workers come or go.
+    on_workers : callable
+        Called from the client's event loop when workers come or go.
     """
 
-    def __init__(self, settings: Settings, run: Run, *, on_progress: Event, on_workers: Callable[[], None]) -> None:
+    def __init__(self, settings: Settings, run: Run, *, on_workers: Callable[[], None]) -> None:
         self._run = run
         self._settings = settings.model_copy(update={"operator_token": None})  # of no use to a worker
-        self._topic = f"microtexture-{uuid4().hex}"
-        self._sent: dict[str, int] = {}
+        #: Under which it holds leases.
+        self.name = f"engine-{uuid4().hex}"
         self._cluster: Any = None if settings.scheduler else _local_cluster(settings, run)
         try:
             address = settings.scheduler or self._cluster
@@ -69,7 +67,6 @@ class Engine:
         except BaseException:
             self._close_cluster()
             raise
-        self._client.subscribe_topic(self._topic, lambda event: on_progress(event[1]))
         self._client.subscribe_topic("all", lambda event: on_workers() if _is_of_workers(event[1]) else None)
 
     @property
@@ -85,36 +82,27 @@ class Engine:
         found = self._client.scheduler_info()["workers"]
         return {address: worker["nthreads"] for address, worker in found.items()}
 
-    def submit(self, job: str, address: str) -> "Future[None]":
-        """Start a job on this worker, or on another one if this one is gone.
+    def busy(self) -> dict[str, int]:
+        """Tasks of every worker, whoever gave them, by its address."""
+        return {address: len(keys) for address, keys in self._client.processing().items()}
 
-        The job and how often it was sent before are the task's key: given to one scheduler by two services, it runs
-        once; given again by one of them, after its end or its worker's, it runs again, though the scheduler may not
-        have forgotten the run before.
-        """
-        count = self._sent[job] = self._sent.pop(job, -1) + 1
-        if len(self._sent) > REMEMBERED:
-            del self._sent[next(iter(self._sent))]
+    def submit(self, lease: Lease, address: str) -> "Future[None]":
+        """Start a job on this worker, and on no other: whose worker is gone is ours to know."""
         future: Future[None] = self._client.submit(
             tasks.work,
             self._run,
             self._settings,
-            job,
-            self._topic,
-            key=("experiment", job, count),
+            lease,
+            key=("experiment", lease.job, lease.fence),
             pure=False,
             workers=[address],
-            allow_other_workers=True,
+            allow_other_workers=False,
         )
         return future
 
     def forget(self, future: "Future[None]") -> None:
-        """Let the scheduler drop a task, whatever became of it; its key can be used again."""
+        """Let the scheduler drop a task, whatever became of it."""
         self._client.cancel([future], force=True)
-
-    def stop(self, job: str) -> None:
-        """Ask the workers politely to end a job; returns at once."""
-        self._later(self._client._run(tasks.stop, job, on_error="ignore"))
 
     def kill(self, address: str) -> None:
         """Kill a worker process; its nanny starts another one. Returns at once."""
@@ -124,6 +112,7 @@ class Engine:
         """Stop the embedded processes and the connection within seconds."""
         with suppress(Exception):  # it may be broken: that is why it is closed
             self._client.unsubscribe_topic("all")
+        with suppress(Exception):
             self._client.close(timeout=CLOSE_SECONDS)
         self._close_cluster()
 

@@ -1,17 +1,14 @@
-"""User-facing messages for runs that the executor stopped: time limit, lost worker."""
+"""User-facing messages for runs that the executor ended: lost worker, no record."""
 
 LOST = (
-    "Try a smaller width and height, or another crop: running this experiment ended its worker process twice, "
-    "most likely for want of memory."
+    "Try a smaller width and height, or another crop: running this experiment ended its worker process again and "
+    "again, the last time with nothing else beside it, most likely for want of memory."
 )
-
-
-def out_of_time(seconds: float) -> str:
-    """Say that a run took longer than this.
-
-    Examples
-    --------
-    >>> out_of_time(300)
-    'Make the texture smaller: this run took longer than 300 seconds.'
-    """
-    return f"Make the texture smaller: this run took longer than {seconds:g} seconds."
+UNRECORDED = (
+    "No worker recorded what came of this experiment. Its operator should check that every worker has the same "
+    "database and the same files as the service."
+)
+UNUSABLE = (
+    "The service could not read or write this experiment's files, although its storage answers. "
+    "Its operator finds the reason in the log."
+)

@@ -2,16 +2,18 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
 
-from app.errors import DeletedError, NotFoundError
+from app.errors import STORAGE, DeletedError, NotFoundError, UnavailableError
 from app.experiments.diagnostics import diagnose
 from app.experiments.environment import environment
 from app.experiments.files.staging import drop, keep, pick, stage
-from app.experiments.model import Experiment, Status, deep_name
+from app.experiments.heartbeat import patiently
+from app.experiments.model import DEEP, Experiment, Lease, Status, deep_name
 from app.experiments.ports import BlobStore, ExperimentStore
 from app.experiments.stage_timer import StageTimer
 from app.images.read import read_crop
@@ -24,8 +26,15 @@ from app.methods.stages import Plan, Stages
 STAGES: Plan = (("reading the crop", 1), ("method", 91), ("structure", 6), ("writing", 2))
 
 
-def compute(store: ExperimentStore, blobs: BlobStore, experiment: Experiment, progress: Progress, threads: int) -> None:
-    """Compute a started experiment, and record its success with what it made."""
+def compute(
+    store: ExperimentStore,
+    blobs: BlobStore,
+    lease: Lease,
+    experiment: Experiment,
+    progress: Progress,
+    threads: int,
+) -> None:
+    """Compute a started experiment, and record its success with what it made, if its lease is held still."""
     timer = StageTimer(progress)
     stages = Stages(STAGES, timer)
     sources = _read_sources(store, blobs, experiment, stages)
@@ -38,13 +47,12 @@ def compute(store: ExperimentStore, blobs: BlobStore, experiment: Experiment, pr
         stages.finish()
         with blobs.lease():
             outputs = [keep(blobs, picture, path) for picture, path in staged]
-            store.succeed(experiment.id, outputs, timer.seconds(), diagnostics, environment())
+            patiently(lambda: store.succeed(lease, outputs, timer.seconds(), diagnostics, environment()))
 
 
-def add_deep(
-    store: ExperimentStore, blobs: BlobStore, experiment_id: str, output: str, progress: Progress, threads: int
-) -> None:
+def add_deep(store: ExperimentStore, blobs: BlobStore, lease: Lease, progress: Progress, threads: int) -> None:
     """Compute an output of an experiment at 16 bits, and add it; nothing if that is not there or has it already."""
+    experiment_id, _, output = lease.job.partition(DEEP)
     try:
         experiment = store.get(experiment_id)
     except (NotFoundError, DeletedError):
@@ -56,7 +64,8 @@ def add_deep(
     pictures = _make_pictures(experiment, sources, 16, threads, stages.within("method"), blobs.temporary_directory)
     with stage(blobs, _pick_deep(pictures, output)) as staged, blobs.lease():
         for picture, path in staged:
-            store.add_output(experiment_id, replace(keep(blobs, picture, path), name=deep_name(picture.name)))
+            kept = replace(keep(blobs, picture, path), name=deep_name(picture.name))
+            patiently(partial(store.add_output, lease, kept))
 
 
 def _pick_deep(pictures: Iterable[Picture], output: str) -> Iterator[Picture]:
@@ -76,7 +85,7 @@ def _read_sources(store: ExperimentStore, blobs: BlobStore, experiment: Experime
     method = method_named(experiment.method)
     for index, item in enumerate(experiment.inputs):
         sample = store.sample(item.sample)
-        path, peak = blobs.path(sample.digest), 65535 if sample.depth == 16 else 255
+        path, peak = _find(blobs, sample.digest), 65535 if sample.depth == 16 else 255
         if method.slot(index).moving:
             clip = Clip(read_frames(path, item.crop, item.frames, sample.height), sample.rate)
             sources.append(Source(clip.frames[0].astype(np.float32), peak, clip))
@@ -84,6 +93,14 @@ def _read_sources(store: ExperimentStore, blobs: BlobStore, experiment: Experime
             pixels = read_crop(path, locate_crop(item.crop, item.frames.first, sample.height))
             sources.append(Source(pixels, peak))
     return sources
+
+
+def _find(blobs: BlobStore, digest: str) -> Path:
+    """The file of a sample, which the database has: where there is none, this worker sees other files."""
+    try:
+        return blobs.path(digest)
+    except NotFoundError as error:
+        raise UnavailableError(STORAGE, "A worker does not find the photograph among its files.") from error
 
 
 def _make_pictures(

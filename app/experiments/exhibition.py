@@ -6,9 +6,9 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from app.errors import AppError, DeletedError, NotFoundError
+from app.errors import AppError, ConflictError, DeletedError, NotFoundError, UnavailableError
 from app.experiments.model import Experiment, Status
-from app.experiments.ports import Executor, ExperimentStore
+from app.experiments.ports import Executor, ExperimentStore, JobQueue
 from app.experiments.preparation import NewExperiment, NewInput, prepare
 from app.experiments.samples import Samples
 from app.gallery.exhibits import exhibits
@@ -23,6 +23,7 @@ log = logging.getLogger(__name__)
 OWNER = "catalogue"  # no token has such a digest, so nobody but the operator may delete them
 UNMADE = {Status.FAILED, Status.CANCELLED}
 POLL_SECONDS = 0.1
+AWAY_SECONDS = 5.0  # before what was away is tried again
 
 
 def is_exhibit(experiment: Experiment) -> bool:
@@ -53,14 +54,17 @@ class Exhibition:
 
     Parameters
     ----------
-    store, executor, samples
+    store, queue, executor, samples
         Those of the service.
     settings : Settings
         ``catalogue`` says whether what is missing is made in the background.
     """
 
-    def __init__(self, store: ExperimentStore, executor: Executor, samples: Samples, settings: Settings) -> None:
+    def __init__(
+        self, store: ExperimentStore, queue: JobQueue, executor: Executor, samples: Samples, settings: Settings
+    ) -> None:
         self._store = store
+        self._queue = queue
         self._executor = executor
         self._samples = samples
         self._settings = settings
@@ -71,15 +75,26 @@ class Exhibition:
     def keep(self, closing: threading.Event) -> None:
         """Take in the bundled samples and then, where the settings want it, make what is missing, one at a time."""
         try:
-            self._samples.add_bundled(closing)
+            self._patiently(closing, lambda: self._samples.add_bundled(closing))
         finally:
             self._samples_are_in.set()
         if self._settings.catalogue:
             try:
-                self.fill(closing)
+                self._patiently(closing, lambda: self.fill(closing))
             except Exception:
                 log.exception("the catalogue could not be made; the next start tries again")
             self.making = False
+
+    @staticmethod
+    def _patiently(closing: threading.Event, work: Callable[[], object]) -> None:
+        """Do it, anew whenever database or storage were away."""
+        while not closing.is_set():
+            try:
+                work()
+                return
+            except UnavailableError as error:
+                log.warning("the exhibits wait: %s", error)
+                closing.wait(AWAY_SECONDS)
 
     def fill(
         self, closing: threading.Event, *, again: bool = False, at_once: int = 1, on_done: OnDone = _silent
@@ -106,13 +121,13 @@ class Exhibition:
         missing = [name for name in declared if again or self._is_missing(name)]
         waiting, begun, number, failed = deque(missing), set[str](), 0, 0
         while waiting or begun:
-            if waiting and len(begun) < at_once and self._executor.waiting == 0:
+            if waiting and len(begun) < at_once and self._queue.waiting() == 0:
                 name = waiting.popleft()
-                self._begin(declared[name])
+                self._begin(declared[name], again)
                 begun.add(name)
             elif closing.wait(POLL_SECONDS):
                 break
-            for name in [name for name in begun if self._executor.snapshot(name) is None]:
+            for name in begun - self._queue.states(begun).keys():
                 begun.remove(name)
                 number += 1
                 error = self._error_of(name)
@@ -155,14 +170,22 @@ class Exhibition:
         except DeletedError:
             return False
 
-    def _begin(self, exhibit: Exhibit) -> None:
+    def _begin(self, exhibit: Exhibit, again: bool) -> None:
         try:
             experiment = self.prepare(exhibit)
-            self._store.replace(experiment)
+            found = self.find(exhibit)
+            if again or (found is not None and found.status in UNMADE):
+                self._store.replace(experiment, OWNER)
+            else:
+                self._store.add(experiment, OWNER)
+        except UnavailableError:
+            raise
+        except ConflictError:
+            log.info("another process makes the exhibit %s", identifier(exhibit))
         except AppError as error:
             log.error("an exhibit of %s cannot be made: %s", exhibit.method, error.message)
         else:
-            self._executor.submit(experiment.id)
+            self._executor.wake()
 
     def _error_of(self, name: str) -> str | None:
         try:

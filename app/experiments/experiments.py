@@ -68,7 +68,7 @@ class Experiments:
         if experiment.status.finished:
             self._delete(experiment)
         elif self._store.cancel(experiment_id):
-            self._executor.cancel(experiment_id)
+            self._executor.wake()
             self._watching.notify(experiment_id)
 
     def set_listed(self, experiment_id: str, listed: bool, token: str | None) -> None:
@@ -78,8 +78,8 @@ class Experiments:
 
     def discard(self, experiment: Experiment) -> None:
         """Cancel an experiment if it is not finished, and delete it."""
-        self._store.cancel(experiment.id)
-        self._executor.cancel(experiment.id)
+        if self._store.cancel(experiment.id):
+            self._executor.wake()
         self._delete(self._store.get(experiment.id))
 
     def _get_owned(self, experiment_id: str, token: str | None) -> Experiment:
@@ -92,5 +92,6 @@ class Experiments:
 
     def _delete(self, experiment: Experiment) -> None:
         self._housekeeping.delete(experiment)
-        for output in experiment.outputs:  # afterwards: who waits for one then learns why it does not come
-            self._executor.cancel(deep_job(experiment.id, output.name))
+        self._executor.wake()
+        for output in experiment.outputs:  # who waits for one at 16 bits learns that it does not come
+            self._watching.notify(deep_job(experiment.id, output.name))

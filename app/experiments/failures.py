@@ -1,14 +1,15 @@
-"""Failures of runs, in words for people; what they cannot mend goes to the log."""
+"""Failures of runs, in words for people, and what is no failure: a storage that cannot be reached for now."""
 
+import errno
 import logging
 
-from app.errors import AppError
+from app.errors import DISK_SPACE, STORAGE, AppError, UnavailableError
 
 log = logging.getLogger(__name__)
 
 BROKEN = "Something went wrong inside the method. This is a fault of the service, not yours."
-UNWRITTEN = "The service could not read or write its files. Its operator finds the reason in the log."
 NO_MEMORY = "Try a smaller width and height: there was not enough memory for this experiment."
+FULL = {errno.ENOSPC, errno.EDQUOT}
 
 
 def explain_failure(job: str, error: Exception) -> str:
@@ -18,4 +19,23 @@ def explain_failure(job: str, error: Exception) -> str:
     if isinstance(error, MemoryError):
         return NO_MEMORY
     log.error("job %s failed", job, exc_info=error)
-    return UNWRITTEN if isinstance(error, OSError) else BROKEN
+    return BROKEN
+
+
+def unavailability(error: OSError) -> UnavailableError:
+    """Say what a file that cannot be read or written is short of: never the experiment's fault."""
+    log.warning("a file of a run cannot be read or written", exc_info=error)
+    if error.errno in FULL:
+        return UnavailableError(DISK_SPACE, "There is no room left on the disk of the service's files.")
+    return UnavailableError(STORAGE, "The service's files cannot be read or written for now.")
+
+
+def out_of_time(seconds: float) -> str:
+    """Say that a run took longer than this.
+
+    Examples
+    --------
+    >>> out_of_time(300)
+    'Make the texture smaller: this run took longer than 300 seconds.'
+    """
+    return f"Make the texture smaller: this run took longer than {seconds:g} seconds."

@@ -17,7 +17,6 @@ from app.gallery.exhibits import exhibits
 log = logging.getLogger(__name__)
 
 PRUNE_SECONDS = 3600.0
-RECORD_SECONDS = 5.0  # how soon a failure that the database did not take is offered to it again
 BATCH = 500  # files looked at under one lock, so that nobody waits long for it
 
 
@@ -61,30 +60,15 @@ class Housekeeping:
         self._sample_keep = sample_keep
         self._longest_run = longest_run
         self._retention = retention or Retention()
-        self._unrecorded: dict[str, str] = {}
 
     def keep(self, closing: threading.Event) -> None:
-        """Prune every hour, and offer the database again what it did not take, until ``closing`` is set."""
-        waited, clock = 0.0, SteadyClock()
-        while not closing.wait(RECORD_SECONDS):
+        """Prune every hour, until ``closing`` is set."""
+        clock = SteadyClock()
+        while not closing.wait(PRUNE_SECONDS):
             try:
-                for experiment_id in list(self._unrecorded):
-                    self._store.fail(experiment_id, self._unrecorded[experiment_id])
-                    del self._unrecorded[experiment_id]
-                waited += RECORD_SECONDS
-                if waited >= PRUNE_SECONDS:
-                    waited = 0.0
-                    self._prune_by(clock)
+                self._prune_by(clock)
             except Exception:
                 log.exception("housekeeping failed; it will be tried again")
-
-    def record_failure(self, experiment_id: str, failure: str) -> None:
-        """Record it now, or as soon as the database is there again."""
-        try:
-            self._store.fail(experiment_id, failure)
-        except Exception:
-            log.exception("the failure of experiment %s could not be recorded; it will be tried again", experiment_id)
-            self._unrecorded[experiment_id] = failure
 
     def delete(self, experiment: Experiment) -> None:
         """Remove an experiment, and its samples and files unless something else refers to them."""

@@ -6,13 +6,12 @@ from datetime import datetime
 from pathlib import Path
 from typing import Protocol
 
-from app.experiments.model import Snapshot
+from app.experiments.model import Lease
 from app.experiments.queue_port import JobQueue
 from app.experiments.store_port import ExperimentStore
-from app.methods.context import Progress
 from app.settings import Settings
 
-__all__ = ["BlobStore", "Ended", "Executor", "ExperimentStore", "JobQueue", "Run"]
+__all__ = ["BlobStore", "Executor", "ExperimentStore", "JobQueue", "Records", "Run"]
 
 
 class BlobStore(Protocol):
@@ -46,6 +45,9 @@ class BlobStore(Protocol):
     def digests(self) -> list[str]:
         """List every digest that has a file."""
 
+    def probe(self) -> None:
+        """Raise `UnavailableError` unless files can be written and read now, with room to spare."""
+
     def remove_unused(self, candidates: Collection[str], used: Callable[[Collection[str]], set[str]]) -> set[str]:
         """Remove files that nothing refers to.
 
@@ -66,46 +68,42 @@ class BlobStore(Protocol):
         """Remove what killed processes left half-written before this moment; how many files."""
 
 
-Ended = Callable[[str, str | None], None]
-"""``ended(job, failure)``"""
+Run = Callable[[Settings, Lease], None]
+"""``run(settings, lease)``: what a worker calls; it records what comes of the job, or raises `UnavailableError`"""
 
-Run = Callable[[Settings, str, Progress], None]
-"""``run(settings, job, progress)``: what a worker calls"""
+
+class Records(Protocol):
+    """What an executor asks of the records of its jobs; any call may raise `UnavailableError`."""
+
+    def fail(self, lease: Lease, error: str, cause: str | None = None) -> None:
+        """Record the failure of a job that no worker can record; ``cause`` charges a last attempt."""
+
+    def stopped(self, job: str) -> bool:
+        """Whether nobody wants this job any more: it was cancelled or deleted."""
 
 
 class Executor(Protocol):
-    """The engine that runs jobs: experiments, by their ids, and outputs at 16 bits (`app.experiments.model.deep_job`).
+    """The engine that runs what waits in the `JobQueue`: it leases a job whenever one of its workers is idle.
 
-    It calls ``ended(job, failure)`` from a thread of its own once a job has left it: ``failure`` is None if the
-    worker's function returned or the job was cancelled, otherwise a sentence for people. What a worker computes it
-    records itself.
+    It knows of no record. Progress, ends and cancellations are in the database, where every other process finds them
+    too; a job whose lease is gone is stopped, first politely, then by killing its worker.
     """
 
-    def start(self, ended: Ended) -> None:
-        """Return when jobs can run; jobs submitted before are kept."""
+    def start(self, records: Records) -> None:
+        """Return when jobs can run, when it was closed, or after half a minute; it goes on trying."""
 
     def close(self) -> None:
-        """Stop within seconds; jobs that wait or run are forgotten."""
+        """Stop within seconds; the leases of what runs are released, and nothing is charged."""
 
     @property
     def ready(self) -> bool:
-        """Whether jobs can run now."""
+        """Whether there are workers."""
 
-    def submit(self, job: str) -> None:
-        """Queue a job; one that is queued or runs already stays as it is. Returns at once, from any thread."""
-
-    def cancel(self, job: str) -> None:
-        """Drop a queued job, stop a running one: first politely, then by killing its worker. Returns at once."""
-
-    def snapshot(self, job: str) -> Snapshot | None:
-        """Describe a job that waits or runs here; None for others and for one that is being cancelled."""
-
-    @property
-    def waiting(self) -> int:
-        """Number of jobs that wait."""
+    def wake(self) -> None:
+        """Look at the queue soon: a job was queued or cancelled here. Returns at once, from any thread."""
 
     def subscribe(self, listener: Callable[[str], None]) -> Callable[[], None]:
-        """Call a listener whenever a snapshot changed or a job left.
+        """Call a listener whenever a job was sent to a worker of this engine, began there, or left it.
 
         Parameters
         ----------

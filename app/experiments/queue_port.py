@@ -108,7 +108,7 @@ class JobQueue(Protocol):
         """Take a job out, whether it waits or runs; False if it does neither."""
 
     def beats(self) -> list[Beat]:
-        """List the heartbeats of all leased jobs."""
+        """List the heartbeats of all leased jobs; one that no worker has begun yet is 0."""
 
     def lapse(self, job: str, fence: int, beat: int) -> bool:
         """Put a job back whose heartbeat stands still; nothing is charged.

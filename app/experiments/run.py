@@ -1,51 +1,80 @@
-"""Jobs of a worker process: runs one to its record in the store, whatever goes wrong in it."""
+"""Jobs of a worker process: runs one to its record in the store, and keeps three kinds of failure apart.
 
-from app.errors import AppError, CancelledError
+The method's own ends the experiment. What is away for now, the database or the files, is raised: the job waits. Whoever
+was stopped from outside records nothing: its lease is gone, or lapses.
+"""
+
+from collections.abc import Callable
+
+from app.errors import CancelledError, UnavailableError
 from app.experiments.computation import add_deep, compute
-from app.experiments.failures import explain_failure
-from app.experiments.model import DEEP
-from app.experiments.ports import BlobStore, ExperimentStore
-from app.methods.context import Progress
-
-MAX_ATTEMPTS = 6  # more often than any row of restarts would start one: it is the experiment that ends the service
+from app.experiments.failures import explain_failure, unavailability
+from app.experiments.heartbeat import Heartbeat, patiently
+from app.experiments.model import DEEP, Lease
+from app.experiments.ports import BlobStore, ExperimentStore, JobQueue
 
 
-def run_job(store: ExperimentStore, blobs: BlobStore, job: str, progress: Progress, *, threads: int) -> None:
-    """Run one job to its record in the store. Running it twice, even at the same time, is harmless.
+def run_job(
+    store: ExperimentStore, queue: JobQueue, blobs: BlobStore, lease: Lease, *, threads: int, time_limit: float
+) -> None:
+    """Run one job to its record in the store.
 
     Parameters
     ----------
-    store, blobs
+    store, queue, blobs
         Those of this process.
-    job : str
-        An experiment's id, or what `deep_job` makes of it.
-    progress : Progress
-        Reports; raises when the job is cancelled or out of time.
+    lease : Lease
+        Of the job; nothing is recorded once it is not held any more.
     threads : int
         Threads that the method computes with.
+    time_limit : float
+        Seconds that the run may take.
 
     Raises
     ------
-    AppError
-        From a `deep_job` only: whatever goes wrong with an experiment itself is recorded as its failure.
+    UnavailableError
+        If the database or the files cannot be reached for now: whatever goes wrong with the job itself is recorded.
     """
-    experiment_id, deep, output = job.partition(DEEP)
-    if deep:
+    run = _run_deep if DEEP in lease.job else _run_experiment
+    with Heartbeat(queue, lease, time_limit) as progress:
+        if not progress.held:
+            return
         try:
-            add_deep(store, blobs, experiment_id, output, progress, threads)
+            run(store, queue, blobs, lease, progress, threads)
         except CancelledError:
-            raise
-        except Exception as error:
-            raise AppError(explain_failure(job, error)) from error
-        return
-    experiment = store.start(experiment_id)
-    if experiment is None:
-        return
+            return
+        except OSError as error:
+            raise unavailability(error) from error
+
+
+def _run_experiment(
+    store: ExperimentStore, queue: JobQueue, blobs: BlobStore, lease: Lease, progress: Heartbeat, threads: int
+) -> None:
+    experiment = store.start(lease)
+    if experiment is not None:
+        _record_failure(
+            lease,
+            lambda: compute(store, blobs, lease, experiment, progress, threads),
+            lambda words: store.fail(lease, words),
+        )
+
+
+def _run_deep(
+    store: ExperimentStore, queue: JobQueue, blobs: BlobStore, lease: Lease, progress: Heartbeat, threads: int
+) -> None:
+    def compute_output() -> None:
+        add_deep(store, blobs, lease, progress, threads)
+        patiently(lambda: queue.finish(lease))
+
+    _record_failure(lease, compute_output, lambda words: queue.finish(lease, words))
+
+
+def _record_failure(lease: Lease, run: Callable[[], None], fail: Callable[[str], bool]) -> None:
+    """Run; record what fails in it by itself, and nothing else."""
     try:
-        if len(experiment.attempts) > MAX_ATTEMPTS:
-            raise AppError("Try a smaller width and height: running this experiment ended its worker again and again.")
-        compute(store, blobs, experiment, progress, threads)
-    except CancelledError:
-        return  # recorded before the worker was told
+        run()
+    except (CancelledError, UnavailableError, OSError):
+        raise
     except Exception as error:
-        store.fail(experiment_id, explain_failure(job, error))
+        words = explain_failure(lease.job, error)
+        patiently(lambda: fail(words))

@@ -1,11 +1,11 @@
 """Service: the use cases, in parts. Pages, API and command line talk to these parts and to nothing below them."""
 
 import threading
-from collections.abc import Collection, Mapping
 from datetime import timedelta
 from functools import partial
 
 from app.errors import DeletedError, NotFoundError
+from app.experiments.availability import Availability
 from app.experiments.exhibition import Exhibition
 from app.experiments.experiments import Experiments
 from app.experiments.files.cache import FileCache
@@ -13,8 +13,8 @@ from app.experiments.files.outputs import Outputs
 from app.experiments.files.renditions import Renditions
 from app.experiments.housekeeping import Housekeeping
 from app.experiments.meter import Meter
-from app.experiments.model import DEEP, Snapshot
-from app.experiments.ports import BlobStore, Executor, ExperimentStore
+from app.experiments.model import DEEP, Lease, Status
+from app.experiments.ports import BlobStore, Executor, ExperimentStore, JobQueue
 from app.experiments.retention import Retention
 from app.experiments.samples import Samples
 from app.experiments.submission import Submission
@@ -32,13 +32,16 @@ class Service:
 
     Parameters
     ----------
-    store, blobs, executor
+    store, queue, blobs, executor
         The backends; closed with the service.
     settings : Settings
     """
 
-    def __init__(self, store: ExperimentStore, blobs: BlobStore, executor: Executor, settings: Settings) -> None:
+    def __init__(
+        self, store: ExperimentStore, queue: JobQueue, blobs: BlobStore, executor: Executor, settings: Settings
+    ) -> None:
         self._store = store
+        self._queue = queue
         self._executor = executor
         self._settings = settings
         cache = FileCache(settings.data_dir / "cache", CACHE_BYTES)
@@ -47,14 +50,18 @@ class Service:
         self.samples = Samples(store, blobs, settings)
         #: Samples as pictures and videos that browsers show.
         self.renditions = Renditions(blobs, cache)
+        #: Which part is away.
+        self.availability = Availability(store, blobs, executor)
         #: The structure index of crops.
         self.meter = Meter(blobs)
         #: Accepts or rejects experiments.
-        self.submission = Submission(store, executor, self.samples, settings)
+        self.submission = Submission(store, queue, executor, self.samples, settings)
         #: Progress of experiments.
-        self.watching = Watching(store, self._snapshots)
+        self.watching = Watching(store, queue.states)
         #: Files of experiments, in every format and depth.
-        self.outputs = Outputs(store, blobs, executor, self.renditions, self.watching, queue_limit=settings.queue_limit)
+        self.outputs = Outputs(
+            store, queue, blobs, executor, self.renditions, self.watching, queue_limit=settings.queue_limit
+        )
         #: When experiments go by themselves.
         self.retention = Retention.by(settings)
         #: Deletes what is no longer used.
@@ -68,24 +75,24 @@ class Service:
             self.samples, self.submission, self.experiments, self.outputs, self.watching, self.housekeeping
         )
         #: The figures of the pages.
-        self.exhibition = Exhibition(store, executor, self.samples, settings)
+        self.exhibition = Exhibition(store, queue, executor, self.samples, settings)
         self._closing = threading.Event()
         self._background: list[threading.Thread] = []
 
     def start(self) -> None:
-        """Return once experiments can run; what was unfinished is queued, bundled samples come in by and by."""
+        """Return once experiments can run; bundled samples come in by and by."""
         self._executor.subscribe(self.watching.notify)
-        for experiment_id in self._store.unfinished():
-            self._executor.submit(experiment_id)
         self.samples.open()
-        self._executor.start(self._ended)
+        self._executor.start(self)
+        if self._closing.is_set():
+            return
         for work in (self.exhibition.keep, self.housekeeping.keep):
             thread = threading.Thread(target=partial(work, self._closing), daemon=True)
             thread.start()
             self._background.append(thread)
 
     def close(self) -> None:
-        """Stop within seconds; what is unfinished is finished after the next start."""
+        """Stop within seconds; what is unfinished waits in the database for whoever takes it."""
         self._closing.set()
         self._executor.close()
         for thread in self._background:
@@ -96,28 +103,27 @@ class Service:
     @property
     def ready(self) -> bool:
         """Whether experiments can run now."""
-        return self._executor.ready
+        return self.availability.missing() is None
 
     @property
     def waiting(self) -> int:
         """How many jobs wait."""
-        return self._executor.waiting
+        return self._queue.waiting()
 
-    def _snapshots(self, jobs: Collection[str]) -> Mapping[str, Snapshot]:
-        """Ask the engine here, and the store whether another process has finished what runs here."""
-        found = {job: snapshot for job in jobs if (snapshot := self._executor.snapshot(job)) is not None}
-        return {job: snapshot for job, snapshot in found.items() if DEEP in job or not self._is_over(job)}
+    # what the executor asks of the records
 
-    def _is_over(self, experiment_id: str) -> bool:
+    def fail(self, lease: Lease, error: str, cause: str | None = None) -> None:
+        """Record the failure of a job that no worker can record."""
+        if DEEP in lease.job:
+            self._queue.finish(lease, error)
+        else:
+            self._store.fail(lease, error, cause)
+
+    def stopped(self, job: str) -> bool:
+        """Whether nobody wants this job any more."""
+        if DEEP in job:
+            return not self._queue.states([job])
         try:
-            return self._store.get(experiment_id).status.finished
+            return self._store.get(job).status is Status.CANCELLED
         except (NotFoundError, DeletedError):
             return True
-
-    def _ended(self, job: str, failure: str | None) -> None:
-        """Record a failure of the worker itself; what a worker computed it has recorded."""
-        if failure is not None:
-            if DEEP in job:
-                self.outputs.record_failure(job, failure)
-            else:
-                self.housekeeping.record_failure(job, failure)

@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 
 from app.errors import ConflictError, DeletedError, NotFoundError
 from app.experiments.model import Experiment
-from app.experiments.ports import Executor, ExperimentStore
+from app.experiments.ports import Executor, ExperimentStore, JobQueue
 from app.experiments.preparation import NewExperiment, memory_of, prepare
 from app.experiments.queue import check_queue
 from app.experiments.samples import Samples
@@ -32,13 +32,16 @@ class Submission:
 
     Parameters
     ----------
-    store, executor, samples
+    store, queue, executor, samples
         Those of the service.
     settings : Settings
     """
 
-    def __init__(self, store: ExperimentStore, executor: Executor, samples: Samples, settings: Settings) -> None:
+    def __init__(
+        self, store: ExperimentStore, queue: JobQueue, executor: Executor, samples: Samples, settings: Settings
+    ) -> None:
         self._store = store
+        self._queue = queue
         self._executor = executor
         self._samples = samples
         self._allowed = Allowed.by(settings)
@@ -57,7 +60,13 @@ class Submission:
         )
 
     def submit(
-        self, request: NewExperiment, owner_token: str, press: str | None = None, *, transient: bool = False
+        self,
+        request: NewExperiment,
+        owner_token: str,
+        press: str | None = None,
+        *,
+        transient: bool = False,
+        client: str | None = None,
     ) -> Experiment:
         """Accept an experiment: it is on disk and queued when this returns.
 
@@ -69,6 +78,8 @@ class Submission:
             A secret of one press of a button: what the same owner asks for with the same press is the same experiment.
         transient : bool
             Whether it is made for one answer, and deleted with it.
+        client : str, optional
+            Who asks for it, for clients take turns; by default the owner.
 
         Raises
         ------
@@ -92,20 +103,20 @@ class Submission:
                 identifier = known
             except DeletedError:
                 pass  # pressed anew since
-        check_queue(self._executor, self._queue_limit)
+        check_queue(self._queue, self._queue_limit)
         experiment = replace(self._prepare(request, owner), id=identifier, transient=transient)
         try:
-            self._store.add(experiment)
+            self._store.add(experiment, owner if client is None else client)
         except ConflictError:
             if press is None:
                 raise
             return self._store.get(identifier)  # the other one of two at once was faster
-        self._executor.submit(experiment.id)
+        self._executor.wake()
         return experiment
 
-    def submit_transient(self, request: NewExperiment) -> Experiment:
+    def submit_transient(self, request: NewExperiment, client: str | None = None) -> Experiment:
         """Accept an experiment that is made for one answer."""
-        return self.submit(request, new_token(), transient=True)
+        return self.submit(request, new_token(), transient=True, client=client)
 
     def _prepare(self, request: NewExperiment, owner: str) -> Experiment:
         return prepare(

@@ -1,5 +1,6 @@
 """Blob store: files by the SHA-256 of their content, under one directory."""
 
+import errno
 import fcntl
 import hashlib
 import os
@@ -9,7 +10,10 @@ from datetime import datetime
 from pathlib import Path
 from uuid import uuid4
 
-from app.errors import NotFoundError
+from app.errors import DISK_SPACE, STORAGE, NotFoundError, UnavailableError
+
+PROBE = b"can be written and read"
+FULL = {errno.ENOSPC, errno.EDQUOT}
 
 
 class FileBlobs:
@@ -22,10 +26,13 @@ class FileBlobs:
     ----------
     directory : Path
         Made if it is not there.
+    min_free_bytes : int
+        Room that must be left on its disk for it to take more.
     """
 
-    def __init__(self, directory: Path) -> None:
+    def __init__(self, directory: Path, min_free_bytes: int = 0) -> None:
         self.directory = directory
+        self._min_free_bytes = min_free_bytes
         self.temporary_directory = directory / "tmp"
         self.temporary_directory.mkdir(parents=True, exist_ok=True)
         self._lock = directory / ".lock"
@@ -86,6 +93,23 @@ class FileBlobs:
                     path.unlink()
                     removed.add(digest)
         return removed
+
+    def probe(self) -> None:
+        """Raise `UnavailableError` unless files can be written and read now, with room to spare."""
+        try:
+            path = self.temporary(PROBE)
+            try:
+                same = path.read_bytes() == PROBE
+            finally:
+                path.unlink(missing_ok=True)
+            room = os.statvfs(self.directory)
+        except OSError as error:
+            part = DISK_SPACE if error.errno in FULL else STORAGE
+            raise UnavailableError(part, f"The files cannot be written for now: {error.strerror}.") from error
+        if not same:
+            raise UnavailableError(STORAGE, "A file that was just written cannot be read back.")
+        if room.f_bavail * room.f_frsize < self._min_free_bytes:
+            raise UnavailableError(DISK_SPACE, "There is too little room left on the disk: try again later.")
 
     def digests(self) -> list[str]:
         """List every digest that has a file."""

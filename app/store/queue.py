@@ -55,7 +55,8 @@ class SqlQueue:
             lease = Lease(row.id, row.fence + 1, attempts_of(row.attempts))
             if lease.last and not alone:
                 return None  # nothing overtakes it: else an engine that is never idle would never run it
-            connection.execute(jobs.update().where(jobs.c.id == row.id).values(holder=holder, fence=lease.fence))
+            taken = jobs.update().where(jobs.c.id == row.id).values(holder=holder, fence=lease.fence, beat=0)
+            connection.execute(taken)
         return lease
 
     def renew(self, lease: Lease, stage: str | None, fraction: float) -> bool:

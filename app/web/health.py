@@ -28,10 +28,11 @@ async def health() -> Response:
 
 @router.get("/readyz", summary="Able to take work", responses={**_status("ready"), **problems(503)})
 def readiness(service: ServiceDep) -> Response:
-    """Experiments can run."""
-    if service.ready:
+    """Experiments can run; otherwise `part` names what is missing: database, storage, disk space or engine."""
+    missing = service.availability.missing()
+    if missing is None:
         return JSONResponse({"status": "ready"}, headers=_UNKEPT)
-    return problem(503, "The engine is not there: it starts, or was lost and comes back.", headers={"Retry-After": "1"})
+    return problem(503, missing.message, headers={"Retry-After": "1"}, part=missing.part)
 
 
 @router.get(

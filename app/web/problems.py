@@ -70,13 +70,19 @@ def problem(
     *,
     faults: Sequence[Mapping[str, str]] = (),
     headers: Mapping[str, str] | None = None,
+    part: str | None = None,
 ) -> Response:
-    """Make an ``application/problem+json`` answer; ``faults`` name the fields at fault: ``{"field", "message"}``."""
+    """Make an ``application/problem+json`` answer.
+
+    ``faults`` name the fields at fault: ``{"field", "message"}``; ``part`` is what is unavailable.
+    """
     body: dict[str, Any] = {"type": "about:blank", "title": title(status), "status": status, "detail": detail}
     if identifier := request_id():
         body["instance"] = f"urn:uuid:{identifier}"
     if faults:
         body["errors"] = [dict(fault) for fault in faults]
+    if part is not None:
+        body["part"] = part
     return JSONResponse(body, status, {"Cache-Control": "no-store", **(headers or {})}, media_type=MEDIA_TYPE)
 
 

@@ -4,6 +4,8 @@ Otherwise uvicorn waits for them until it is killed.
 """
 
 import asyncio
+import logging
+import os
 import signal
 import threading
 from collections.abc import Callable, Coroutine, Iterator
@@ -14,6 +16,26 @@ from typing import Any, TypeVar
 from fastapi import Request
 
 _Result = TypeVar("_Result")
+
+HOPELESS = 70  # exit code of a service that cannot run experiments any more: its supervisor starts it again
+
+_gave_up = threading.Event()
+
+
+def give_up() -> None:
+    """Stop this process as on SIGTERM, but end it with the code `HOPELESS`; from any thread."""
+    _gave_up.set()
+    os.kill(os.getpid(), signal.SIGTERM)
+
+
+def end_if_given_up() -> None:
+    """End the process at once if it gave up; called when everything is closed.
+
+    A server that was stopped by a signal ends by that signal, which supervisors take for an orderly end.
+    """
+    if _gave_up.is_set():
+        logging.shutdown()
+        os._exit(HOPELESS)
 
 
 @contextmanager

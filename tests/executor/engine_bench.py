@@ -11,39 +11,58 @@ import engine_jobs
 import pytest
 
 from app.executor.dask import DaskExecutor
+from app.experiments.model import DEEP, Lease, Snapshot, Status
 from app.settings import Settings
+from app.store.queue import SqlQueue
+from app.store.sql import SqlStore
 from tests.executor.inline import InlineExecutor
 
+SUFFIX = f"{DEEP}texture"
 SECONDS = 30.0  # none of what is waited for takes as long
 
 
 class Bench:
     """One executor under test, with its jobs' marks and what it told the service."""
 
-    def __init__(self, kind: str, executor: Any, directory: Path) -> None:
+    def __init__(self, kind: str, executor: Any, queue: SqlQueue, directory: Path) -> None:
         self.kind = kind
         self.executor = executor
+        self.queue = queue
         self.directory = directory
-        self.ended: list[tuple[str, str | None]] = []
         self.told: list[str] = []
         self._changed = threading.Condition()
         executor.subscribe(self._on_change)
 
     def start(self) -> None:
-        self.executor.start(self._on_end)
+        self.executor.start(self)
+
+    # records
+
+    def fail(self, lease: Lease, error: str, cause: str | None = None) -> None:
+        self.queue.finish(lease, error)
+
+    def stopped(self, job: str) -> bool:
+        return not self.queue.states([job])
+
+    # what a test does
 
     def job(self, name: str) -> str:
-        return f"{name}!{self.directory}"
+        return f"{name}!{self.directory}{SUFFIX}"
 
     def submit(self, *names: str) -> None:
         for name in names:
-            self.executor.submit(self.job(name))
+            self.queue.enqueue(self.job(name), "tests")
+        self.executor.wake()
 
     def cancel(self, name: str) -> None:
-        self.executor.cancel(self.job(name))
+        self.queue.cancel(self.job(name))
+        self.executor.wake()
 
-    def snapshot(self, name: str) -> Any:
-        return self.executor.snapshot(self.job(name))
+    def snapshot(self, name: str) -> Snapshot | None:
+        return self.queue.states([self.job(name)]).get(self.job(name))
+
+    def status(self, name: str) -> Status | None:
+        return found.status if (found := self.snapshot(name)) is not None else None
 
     def go(self, name: str) -> None:
         (self.directory / f"{name}.go").touch()
@@ -63,22 +82,10 @@ class Bench:
                 self._changed.wait(0.02)
         pytest.fail("what was waited for did not come")
 
-    def ended_jobs(self, *names: str) -> list[str]:
-        """Those of these jobs that have ended, in the order of their ends."""
-        jobs = {self.job(name) for name in names}
-        return [job for job, _ in self.ended if job in jobs]
-
     def end_of(self, name: str) -> str | None:
-        """Wait for a job's end; its failure."""
-        self.until(lambda: self.ended_jobs(name))
-        failures = [failure for job, failure in self.ended if job == self.job(name)]
-        assert len(failures) == 1
-        return failures[0]
-
-    def _on_end(self, job: str, failure: str | None) -> None:
-        with self._changed:
-            self.ended.append((job, failure))
-            self._changed.notify_all()
+        """Wait until a job that was submitted has left the queue; its failure."""
+        self.until(lambda: self.snapshot(name) is None)
+        return self.queue.failure(self.job(name))
 
     def _on_change(self, job: str) -> None:
         with self._changed:
@@ -95,8 +102,13 @@ def free_port() -> int:
 def a_bench(kind: str, directory: Path, **values: Any) -> Bench:
     """A bench not yet started, with two workers unless told otherwise."""
     settings = Settings(data_dir=directory, **({"workers": 2, "worker_memory": 300 << 20} | values))
-    executor = {"dask": DaskExecutor, "inline": InlineExecutor}[kind](settings, engine_jobs.run)
-    return Bench(kind, executor, directory)
+    queue = SqlQueue(SqlStore(settings.sql_url).database)
+    executor: Any
+    if kind == "dask":
+        executor = DaskExecutor(settings, engine_jobs.run, queue, lambda: None)
+    else:
+        executor = InlineExecutor(settings, engine_jobs.run, queue)
+    return Bench(kind, executor, queue, directory)
 
 
 @contextmanager

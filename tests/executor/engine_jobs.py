@@ -7,15 +7,21 @@ import os
 import resource
 import signal
 import time
+from functools import cache
 from pathlib import Path
 
 import numpy as np
 
-from app.errors import InvalidInputError
+from app.errors import STORAGE, CancelledError, InvalidInputError, UnavailableError
+from app.experiments.failures import explain_failure
+from app.experiments.heartbeat import Heartbeat
+from app.experiments.model import DEEP, Lease
 from app.methods.context import Context, Progress
 from app.methods.model import Source
 from app.methods.registry import method
 from app.settings import Settings
+from app.store.queue import SqlQueue
+from app.store.sql import SqlStore
 
 PATIENCE = 60.0
 
@@ -32,14 +38,31 @@ def marks(directory: Path, name: str) -> list[int]:
     return [int(line) for line in path.read_text().splitlines()] if path.exists() else []
 
 
-def run(settings: Settings, job: str, progress: Progress) -> None:
+@cache
+def queue_of(url: str) -> SqlQueue:
+    return SqlQueue(SqlStore(url).database)
+
+
+def run(settings: Settings, lease: Lease) -> None:
     """Behave as the job's name says; marks ``<name>.started`` first and ``<name>.done`` last."""
-    name, _, where = job.partition("!")
-    directory = Path(where)
+    name, _, where = lease.job.partition(DEEP)[0].partition("!")
+    directory, queue = Path(where), queue_of(settings.sql_url)
     behaviour = name.split("-")[0]
-    mark(directory, f"{name}.started")
-    BEHAVIOURS[behaviour](directory, name, progress)
-    mark(directory, f"{name}.done")
+    with Heartbeat(queue, lease, settings.time_limit) as progress:
+        if not progress.held:
+            return
+        mark(directory, f"{name}.started")
+        try:
+            BEHAVIOURS[behaviour](directory, name, progress)
+        except CancelledError:
+            return
+        except UnavailableError:
+            raise
+        except Exception as error:
+            queue.finish(lease, explain_failure(lease.job, error))
+            return
+        mark(directory, f"{name}.done")
+        queue.finish(lease)
 
 
 def quick(directory: Path, name: str, progress: Progress) -> None:
@@ -67,6 +90,17 @@ def refused(directory: Path, name: str, progress: Progress) -> None:
 
 def broken(directory: Path, name: str, progress: Progress) -> None:
     raise ZeroDivisionError("not for people")
+
+
+def away(directory: Path, name: str, progress: Progress) -> None:
+    """Find the files away, as often as the name's number says."""
+    if len(marks(directory, f"{name}.started")) <= int(name.split("-")[1]):
+        raise UnavailableError(STORAGE, "The files are away.")
+
+
+def forgetful(directory: Path, name: str, progress: Progress) -> None:
+    """Leave without a record."""
+    raise CancelledError("Nobody asked for that.")
 
 
 def killed(directory: Path, name: str, progress: Progress) -> None:
@@ -102,5 +136,5 @@ def large(directory: Path, name: str, progress: Progress) -> None:
 
 BEHAVIOURS = {
     function.__name__: function
-    for function in (quick, polite, stubborn, refused, broken, killed, greedy, textured, large)
+    for function in (quick, polite, stubborn, refused, broken, away, forgetful, killed, greedy, textured, large)
 }

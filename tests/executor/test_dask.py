@@ -1,23 +1,24 @@
 """The Dask executor's dispatcher, over an engine that fails on purpose: faults are logged, and no job is lost."""
 
 import logging
-import threading
 from collections.abc import Iterator
-from types import SimpleNamespace
+from pathlib import Path
+from typing import Any
 
 import pytest
 from distributed.scheduler import KilledWorker
 
-from app.executor.messages import LOST
+from app.errors import STORAGE, UnavailableError
 from app.experiments.model import Snapshot, Status
-from tests.executor.fake_engine import PATIENCE, WORKER, Bench, dispatching
+from tests.executor.fake_engine import SUFFIX, WORKER, Bench, dispatching
 
 KILLED = KilledWorker("task", None, 0)  # type: ignore[arg-type] # which worker it was is not looked at
+AWAY = UnavailableError(STORAGE, "The files are away.")
 
 
 @pytest.fixture
-def bench(monkeypatch: pytest.MonkeyPatch) -> Iterator[Bench]:
-    with dispatching(monkeypatch) as bench:
+def bench(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Bench]:
+    with dispatching(monkeypatch, tmp_path) as bench:
         yield bench
 
 
@@ -33,55 +34,70 @@ def test_an_engine_that_cannot_be_opened_is_tried_again_with_growing_pauses(
 ) -> None:
     """Each attempt is logged with its reason; the jobs that wait run afterwards."""
     bench.cannot_open = 5
-    bench.executor.submit("a")
+    bench.submit("a")
     assert not bench.executor.ready
     bench.start()
     bench.until(lambda: bench.opened and "a" in bench.opened[0].tasks)
-    words = "the engine cannot be opened; next attempt in {:g} seconds"
+    words = "the engine cannot be opened, next attempt in {:g} seconds: no scheduler answers"
     assert messages(caplog) == [(logging.ERROR, words.format(each)) for each in (0.001, 0.002, 0.004, 0.004, 0.004)]
-    assert caplog.text.count("no scheduler answers") >= 5
     assert bench.executor.ready
 
 
-def test_an_engine_without_workers_is_not_ready(bench: Bench) -> None:
+def test_an_engine_without_workers_is_not_ready_and_leases_nothing(bench: Bench) -> None:
     bench.engines[0].threads = {}
-    bench.executor.submit("a")
+    bench.submit("a")
     bench.executor._open = True
+    bench.executor._keep_engine()
     bench.executor._keep_engine()
     bench.executor._fill()
     assert not bench.executor.ready
-    assert bench.executor.snapshot("a") == Snapshot(Status.QUEUED, position=1)
+    assert bench.state("a") == Snapshot(Status.QUEUED, position=1)
     bench.engines[0].threads = {WORKER: 1}
+    bench.executor._keep_engine()
     bench.executor._fill()
     assert bench.executor.ready
-    assert bench.executor.waiting == 0
+    assert bench.queue.waiting() == 0
 
 
 def test_jobs_of_a_lost_engine_run_on_the_next_one_in_their_order(
     bench: Bench, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Before those that waited; one that was cancelled is over."""
-    first, second = bench.engines
+    """Before those that waited, and nothing is charged; one that was cancelled is over."""
+    first, second, _ = bench.engines
     first.threads, second.threads = {WORKER: 3}, {WORKER: 1}
+    bench.submit("a", "b", "c", "d")
     bench.start()
-    for job in ("a", "b", "c", "d"):
-        bench.executor.submit(job)
     bench.until(lambda: set(first.tasks) == {"a", "b", "c"})
-    bench.executor.cancel("b")
-    bench.until(lambda: first.times("stop") == ["b"])
+    bench.cancel("b")
     first.alive = False
     bench.until(lambda: "a" in second.tasks)
-    assert (logging.WARNING, "the engine was lost; opening another one") in messages(caplog)
-    assert bench.ended == [("b", None)]
+    assert (logging.ERROR, "the engine was lost; another one is opened") in messages(caplog)
     assert first.times("close") == [None]
-    second.tasks["a"].end()
-    bench.until(lambda: "c" in second.tasks)
-    second.tasks["c"].end()
-    bench.until(lambda: "d" in second.tasks)
+    for name, after in (("a", "c"), ("c", "d")):
+        bench.record(second.tasks[name])
+        bench.until(lambda after=after: after in second.tasks)
     first.tasks["a"].end("error", RuntimeError("late"))  # of the engine that was given up: nobody listens
-    second.tasks["d"].end()
-    bench.until(lambda: len(bench.ended) == 4)
-    assert bench.ended[1:] == [("a", None), ("c", None), ("d", None)]
+    assert second.tasks["d"].lease.attempts == ()
+    bench.record(second.tasks["d"])
+    bench.until(lambda: not bench.executor._runs)
+    assert bench.failed == []
+
+
+def test_a_process_whose_engines_have_no_workers_gives_up(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """It ends, so that its supervisor starts it again; each step is logged."""
+    monkeypatch.setattr("app.executor.supervision.DESERTED_SECONDS", 0.02)
+    monkeypatch.setattr("app.executor.supervision.HOPELESS_SECONDS", 0.02)
+    for engine in bench.engines[:2]:
+        engine.threads = {}
+    bench.start_in_background()
+    bench.until(bench.hopeless.is_set)
+    assert [message for _, message in messages(caplog)] == [
+        "the engine has no workers; another one is opened",
+        "the engine has no workers; another one is opened",
+        "no worker can be started: the service ends, so that its supervisor starts it again",
+    ]
 
 
 # The dispatcher
@@ -92,77 +108,80 @@ def test_a_job_that_cannot_be_sent_keeps_its_place_and_is_sent_later(
 ) -> None:
     engine = bench.engines[0]
     engine.failing = {"submit"}
-    bench.executor.submit("a")
-    bench.executor.submit("b")
+    bench.submit("a", "b")
     bench.start()
     bench.until(lambda: len(engine.times("submit")) >= 3)
     assert set(engine.times("submit")) == {"a"}
-    assert bench.executor.waiting <= 2
     engine.failing = set()
     bench.until(lambda: "a" in engine.tasks)
     assert set(messages(caplog)) == {(logging.ERROR, "the dispatcher stumbled; it goes on")}
     assert "submit fails" in caplog.text
-    assert bench.executor.snapshot("b") == Snapshot(Status.QUEUED, position=1)
-    engine.tasks["a"].end()
+    assert bench.state("b") == Snapshot(Status.QUEUED, position=1)
+    bench.record(engine.tasks["a"])
     bench.until(lambda: "b" in engine.tasks)
-    assert bench.ended == [("a", None)]
 
 
 def test_a_list_of_workers_that_cannot_be_read_is_read_again(bench: Bench, caplog: pytest.LogCaptureFixture) -> None:
     engine = bench.engines[0]
     engine.failing = {"workers"}
-    bench.executor.submit("a")
-    bench.executor._open = True
-    thread = threading.Thread(target=bench.executor._dispatch)
-    thread.start()
+    bench.submit("a")
+    bench.start_in_background()
     bench.until(lambda: len(engine.times("workers")) >= 2)
     engine.failing = set()
     bench.until(lambda: "a" in engine.tasks)
-    bench.executor.close()
-    thread.join(PATIENCE)
     assert set(messages(caplog)) == {(logging.ERROR, "the dispatcher stumbled; it goes on")}
 
 
 def test_a_task_that_the_scheduler_does_not_forget_ends_all_the_same(bench: Bench) -> None:
     engine = bench.engines[0]
     engine.failing = {"forget"}
+    bench.submit("a", "b")
     bench.start()
-    bench.executor.submit("a")
-    bench.executor.submit("b")
     bench.until(lambda: "a" in engine.tasks)
-    engine.tasks["a"].end("error", RuntimeError("not for people"))
+    task = engine.tasks["a"]
+    bench.queue.finish(task.lease)
+    task.end("error", RuntimeError("not for people"))
     bench.until(lambda: "b" in engine.tasks)
-    assert [job for job, _ in bench.ended] == ["a"]
-    assert engine.tasks["a"].released
+    assert task.released
 
 
-def test_a_job_whose_worker_is_killed_runs_once_more_before_the_others(bench: Bench) -> None:
-    engine = bench.engines[0]
+def test_an_end_that_cannot_be_recorded_keeps_no_other_from_it(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Of a round; it is put back and tried again."""
+    engine, stumbles = bench.engines[0], iter(range(3))
+    engine.threads = {WORKER: 2}
+    bench.submit("a", "b")
     bench.start()
-    bench.executor.submit("a")
-    bench.executor.submit("b")
-    bench.until(lambda: "a" in engine.tasks)
-    for times in (1, 2):
-        bench.until(lambda times=times: engine.times("submit") == ["a"] * times)
-        engine.tasks["a"].end("error", KILLED)
-    bench.until(lambda: "b" in engine.tasks)
-    assert bench.ended == [("a", LOST)]
+    bench.until(lambda: {"a", "b"} <= engine.tasks.keys())
+    holds = bench.queue.holds
+
+    def stumbling(lease: Any) -> bool:
+        if lease.job == "a" + SUFFIX and next(stumbles, None) is not None:
+            raise ZeroDivisionError("it stumbles")
+        return holds(lease)
+
+    monkeypatch.setattr(bench.queue, "holds", stumbling)
+    for task in list(engine.tasks.values()):
+        bench.record(task)
+    bench.until(lambda: not bench.executor._runs)
+    assert messages(caplog) == [(logging.ERROR, "the dispatcher stumbled; it goes on")] * 3
 
 
 def test_a_listener_that_fails_is_logged_and_the_dispatcher_goes_on(
     bench: Bench, caplog: pytest.LogCaptureFixture
 ) -> None:
-    failures = iter([SimpleNamespace()])
+    failures = iter([None])
 
     def listener(job: str) -> None:
-        if next(failures, None) is not None:
+        for _ in failures:
             raise ZeroDivisionError("a listener fails")
 
     bench.executor.subscribe(listener)
-    bench.executor.submit("a")
+    bench.submit("a")
     bench.start()
     bench.until(lambda: "a" in bench.engines[0].tasks)
-    bench.engines[0].tasks["a"].end()
-    bench.until(lambda: bench.ended == [("a", None)])
+    bench.record(bench.engines[0].tasks["a"])
+    bench.until(lambda: not bench.executor._runs)
     assert messages(caplog) == [(logging.ERROR, "the dispatcher stumbled; it goes on")]
     assert "a listener fails" in caplog.text

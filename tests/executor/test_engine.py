@@ -10,9 +10,10 @@ import pytest
 
 from app.executor import engine, tasks
 from app.executor.engine import Engine
+from app.experiments.model import Lease
 from app.settings import Settings
 
-RUN = lambda settings, job, progress: None  # noqa: E731 - it is only passed on
+RUN = lambda settings, lease: None  # noqa: E731 - it is only passed on
 
 
 class Cluster:
@@ -85,9 +86,7 @@ def cluster(monkeypatch: pytest.MonkeyPatch) -> Cluster:
 
 
 def opened(**settings: Any) -> Engine:
-    return Engine(
-        Settings(data_dir=Path("unused"), **settings), RUN, on_progress=lambda event: None, on_workers=lambda: None
-    )
+    return Engine(Settings(data_dir=Path("unused"), **settings), RUN, on_workers=lambda: None)
 
 
 def test_a_cluster_whose_client_does_not_come_up_is_closed(
@@ -156,19 +155,16 @@ def test_a_worker_whose_nanny_does_not_answer_is_asked_to_leave(
     assert [(each.levelno, each.message) for each in caplog.records] == [(logging.WARNING, words)] * (not answers)
 
 
-def test_every_run_of_a_job_is_a_task_of_its_own(
-    client: type[Client], cluster: Cluster, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """As long as a scheduler may remember the run before; what is counted is bounded."""
-    monkeypatch.setattr(engine, "REMEMBERED", 2)
+def test_every_lease_of_a_job_is_a_task_of_its_own(client: type[Client], cluster: Cluster) -> None:
+    """As long as a scheduler may remember the run before."""
     made = opened()
-    keys = [made.submit(job, "tcp://worker").key for job in ("a", "a", "b", "a", "c", "b", "a")]
-    assert [key[1:] for key in keys] == [("a", 0), ("a", 1), ("b", 0), ("a", 2), ("c", 0), ("b", 0), ("a", 0)]
+    leases = [Lease("a", 1), Lease("a", 2), Lease("b", 1)]
+    assert [made.submit(lease, "tcp://worker").key[1:] for lease in leases] == [("a", 1), ("a", 2), ("b", 1)]
 
 
 def test_a_worker_is_not_given_the_operators_token(client: type[Client], cluster: Cluster) -> None:
-    opened(operator_token="the operator's own token").submit("a", "tcp://worker")
+    opened(operator_token="the operator's own token").submit(Lease("a", 1), "tcp://worker")
     function, arguments, options = client.made[0].done[-1]
     assert function is tasks.work
     assert arguments[1].operator_token is None
-    assert (options["workers"], options["allow_other_workers"], options["pure"]) == (["tcp://worker"], True, False)
+    assert (options["workers"], options["allow_other_workers"], options["pure"]) == (["tcp://worker"], False, False)

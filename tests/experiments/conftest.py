@@ -20,6 +20,7 @@ from app.methods.model import Picture
 from app.methods.registry import METHODS
 from app.settings import Settings
 from app.store.blobs import FileBlobs
+from app.store.queue import SqlQueue
 from app.store.sql import SqlStore
 from app.worker import run_job
 from tests.executor.inline import InlineExecutor
@@ -52,7 +53,8 @@ def service(settings: Settings) -> Iterator[Service]:
 def a_service(settings: Settings) -> Service:
     settings.data_dir.mkdir(exist_ok=True)
     store, blobs = SqlStore(settings.sql_url), FileBlobs(settings.data_dir / "files")
-    return Service(store, blobs, InlineExecutor(settings, run_job), settings)
+    queue = SqlQueue(store.database)
+    return Service(store, queue, blobs, InlineExecutor(settings, run_job, queue), settings)
 
 
 @pytest.fixture

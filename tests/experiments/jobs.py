@@ -7,20 +7,19 @@ from typing import Any
 
 import numpy as np
 
-from app.experiments.model import Experiment, ExperimentInput
+from app.experiments.model import DEEP, Experiment, ExperimentInput, Lease
+from app.experiments.run import run_job
 from app.images.crop import Rectangle
 from app.images.png_writer import encode_png
 from app.methods.registry import METHODS
 from app.store.blobs import FileBlobs
+from app.store.queue import SqlQueue
 from app.store.sql import SqlStore
 from tests.store.records import a_sample, an_experiment
 
 Breaking = Callable[[BaseException], None]
+TIME_LIMIT = 60.0
 CROP = Rectangle(2, 3, 20, 16)
-
-
-def silent(stage: str, fraction: float) -> None:
-    """Take progress and do nothing with it."""
 
 
 def submit(store: SqlStore, blobs: FileBlobs, **values: Any) -> Experiment:
@@ -32,6 +31,32 @@ def submit(store: SqlStore, blobs: FileBlobs, **values: Any) -> Experiment:
     experiment = an_experiment(sample, inputs=(ExperimentInput(sample.id, CROP),), parameters=parameters, **values)
     store.add(experiment)
     return experiment
+
+
+def lease_of(store: SqlStore, job: str) -> Lease:
+    """Lease a job as an engine does; one at 16 bits is queued first."""
+    queue = SqlQueue(store.database)
+    if DEEP in job:
+        queue.enqueue(job, "tests")
+    lease = queue.lease("tests", alone=True)
+    assert lease is not None
+    assert lease.job == job
+    return lease
+
+
+def run_leased(store: SqlStore, blobs: FileBlobs, lease: Lease) -> None:
+    """Run a job as a worker does."""
+    run_job(store, SqlQueue(store.database), blobs, lease, threads=1, time_limit=TIME_LIMIT)
+
+
+def run(store: SqlStore, blobs: FileBlobs, job: str) -> None:
+    """Lease a job and run it."""
+    run_leased(store, blobs, lease_of(store, job))
+
+
+def waits(store: SqlStore, job: str) -> bool:
+    """Whether a job is in the queue, or runs."""
+    return job in SqlQueue(store.database).states([job])
 
 
 def left_over(blobs: FileBlobs) -> list[Path]:

@@ -69,7 +69,7 @@ def test_a_killed_service_finishes_after_a_restart_as_if_nothing_had_happened(
             process.kill()
         process.wait(SECONDS)
         assert psutil.wait_procs(family, SECONDS)[1] == []
-    assert idle.experiments.get(disturbed).status is Status.RUNNING
+    assert not idle.experiments.get(disturbed).status.finished
     undisturbed = idle.submission.submit(request, "owner").id
     with service_process(settings) as process:
         for experiment_id in (disturbed, undisturbed):
@@ -79,5 +79,5 @@ def test_a_killed_service_finishes_after_a_restart_as_if_nothing_had_happened(
         process.wait(SECONDS)
         assert psutil.wait_procs(family, SECONDS)[1] == []
     one, other = idle.experiments.get(disturbed), idle.experiments.get(undisturbed)
-    assert (len(one.attempts), len(other.attempts)) == (2, 1)
+    assert one.attempts == other.attempts == ()  # nobody but us is to blame
     assert one.outputs == other.outputs

@@ -172,7 +172,6 @@ def broken(monkeypatch: pytest.MonkeyPatch) -> Broken:
     ("error", "words"),
     [
         (MemoryError(), "not enough memory"),
-        (OSError(28, "No space left on device"), "operator finds the reason in the log"),
         (ZeroDivisionError(), "fault of the service"),
         (AppError("The stars are against it."), "stars are against it"),
     ],

@@ -20,6 +20,8 @@ from app.gallery.exhibits import exhibits
 from app.gallery.identity import identifier
 from app.methods.explanations.model import Exhibit
 from app.settings import ROOT, Settings
+from tests.experiments.exhibition_engine import Engine
+from tests.experiments.jobs import lease_of
 
 SAMPLES = ROOT / "samples"
 DRAWN = ("two_sinusoids", "lit_plaster")
@@ -111,48 +113,21 @@ def test_the_service_makes_what_is_missing_in_the_background(
     assert service.exhibition.find(PLASTER).status is Status.SUCCEEDED
 
 
-class Busy:
-    """An engine in which something waits until told otherwise."""
-
-    def __init__(self) -> None:
-        self.waiting, self.jobs = 1, []
-
-    def submit(self, job: str) -> None:
-        self.jobs.append(job)
-
-    def snapshot(self, job: str) -> None:
-        return None
-
-
 def test_nothing_is_begun_while_somebody_waits(filled: Service) -> None:
     """It asks again and again: here until the fifth time it is told that somebody waits."""
-    engine: Any
-    engine, asked = Busy(), []
+    engine, asked = Engine(filled), list[float | None]()
+    engine.waits = 1
 
     class Closing(threading.Event):
         def wait(self, timeout: float | None = None) -> bool:
-            assert engine.jobs == [] or engine.waiting == 0
+            assert engine.jobs == [] or engine.waits == 0
             asked.append(timeout)
-            engine.waiting = 0 if len(asked) == 5 else engine.waiting
+            engine.waits = 0 if len(asked) == 5 else engine.waits
             return False
 
-    filled.exhibition._executor = engine
     filled.exhibition.fill(Closing(), again=True)
     assert engine.jobs == [identifier(WAVES), identifier(PLASTER)]
     assert len(asked) == 5
-
-
-class Ended:
-    """An engine whose jobs end as they are begun, in a state that the test records."""
-
-    def __init__(self, record: Callable[[str], object]) -> None:
-        self.record, self.waiting = record, 0
-
-    def submit(self, job: str) -> None:
-        self.record(job)
-
-    def snapshot(self, job: str) -> None:
-        return None
 
 
 Done = list[tuple[int, int, Exhibit, str | None]]
@@ -169,16 +144,19 @@ def test_what_fails_is_counted_and_reported_with_its_reason(filled: Service) -> 
     store: Any = filled._store
 
     def end(job: str) -> None:
-        assert store.cancel(job) if job == identifier(PLASTER) else store.fail(job, "too large")
+        if job == identifier(PLASTER):
+            assert store.cancel(job)
+        else:
+            assert store.fail(lease_of(store, job), "too large")
 
-    filled.exhibition._executor = Ended(end)  # type: ignore[assignment] # as much of one as is asked
+    Engine(filled, end)
     counts, done = fill(filled, again=True)
     assert counts == exhibition.Filled(failed=2, without_sample=1)
     assert done == [(1, 2, WAVES, "too large"), (2, 2, PLASTER, "It was cancelled.")]
 
 
 def test_what_is_deleted_while_it_is_made_is_reported(filled: Service) -> None:
-    filled.exhibition._executor = Ended(filled._store.delete)  # type: ignore[assignment] # as much of one as is asked
+    Engine(filled, filled._store.delete)
     counts, done = fill(filled, again=True)
     assert counts == exhibition.Filled(failed=2, without_sample=1)
     assert {error for _, _, _, error in done} == {"It could not be begun; the log says why."}
@@ -204,22 +182,36 @@ def test_one_that_cannot_be_prepared_is_logged_and_keeps_no_other_from_being_mad
 def test_as_many_are_begun_at_once_as_are_asked_for(filled: Service) -> None:
     begun: list[int] = []
 
-    class Engine:
-        waiting = 0
-        jobs: set[str] = set()  # noqa: RUF012 - one engine
+    def begin(job: str) -> None:
+        engine.running.add(job)
+        begun.append(len(engine.running))
 
-        def submit(self, job: str) -> None:
-            self.jobs.add(job)
-            begun.append(len(self.jobs))
+    engine = Engine(filled, begin)
 
-        def snapshot(self, job: str) -> object:
+    class Closing(threading.Event):
+        def wait(self, timeout: float | None = None) -> bool:
             if len(begun) == 2:
-                self.jobs.discard(job)
-            return job if job in self.jobs else None
+                engine.running.clear()
+            return False
 
-    filled.exhibition._executor = Engine()  # type: ignore[assignment] # as much of one as is asked
-    assert fill(filled, again=True, at_once=2)[0].made + fill(filled)[0].kept == 4
+    filled.exhibition.fill(Closing(), again=True, at_once=2)
     assert begun == [1, 2]
+    assert engine.jobs == [identifier(WAVES), identifier(PLASTER)]
+
+
+@pytest.mark.parametrize("seen", [True, False])
+def test_two_processes_make_an_exhibit_once(filled: Service, monkeypatch: pytest.MonkeyPatch, seen: bool) -> None:
+    """The second leaves the first one's alone, whether that waits already or is added at the same moment."""
+    first = filled.exhibition.prepare(WAVES)
+    Engine(filled)
+    filled._store.replace(first, "another process")
+    find = filled.exhibition.find
+    if not seen:
+        monkeypatch.setattr(filled.exhibition, "find", lambda exhibit: None)
+    filled.exhibition._begin(WAVES, False)
+    made = find(WAVES)
+    assert made is not None
+    assert made.created_at == first.created_at
 
 
 def test_a_fault_of_the_background_is_logged_and_the_pages_no_longer_promise_figures(

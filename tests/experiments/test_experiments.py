@@ -2,35 +2,17 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from app.errors import DeletedError, ForbiddenError, NotFoundError
-from app.experiments.model import DEEP, Experiment, Sample, Status
+from app.experiments.model import Experiment, Sample, Status, deep_job
 from app.experiments.service import Service
 from app.settings import Settings
 from tests.experiments.running import OWNER, a_request, finished
 
 OPERATOR = "the operator's own token"
-
-
-@pytest.fixture
-def notes(service: Service, monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, str]]:
-    """What the engine and those who watch are told."""
-    told: list[tuple[str, str]] = []
-    cancel, notify = service._executor.cancel, service.watching.notify
-
-    def cancelling(job: str) -> None:
-        told.append(("cancel", job))
-        cancel(job)
-
-    def notifying(job: str) -> None:
-        told.append(("notify", job))
-        notify(job)
-
-    monkeypatch.setattr(service._executor, "cancel", cancelling)
-    monkeypatch.setattr(service.watching, "notify", notifying)
-    return told
 
 
 @pytest.mark.parametrize(
@@ -69,14 +51,20 @@ def test_what_a_stranger_asks_for_is_refused_and_changes_nothing(
 
 
 def test_deleting_an_experiment_cancels_the_job_of_every_output_at_16_bits(
-    service: Service, sample: Sample, notes: list[tuple[str, str]]
+    service: Service, sample: Sample, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """After the record is gone: who waits for one then learns why it does not come."""
     experiment = finished(service, a_request(sample))
-    notes.clear()
+    told: list[str] = []
+    monkeypatch.setattr(service.watching, "notify", told.append)
+    jobs = [deep_job(experiment.id, output.name) for output in experiment.outputs]
+    queue: Any = service._queue
+    monkeypatch.setattr(service._executor, "wake", lambda: None)
+    for job in jobs:
+        queue.enqueue(job, "tests")
     service.experiments.cancel_or_delete(experiment.id, OWNER)
-    jobs = [job for what, job in notes if what == "cancel"]
-    assert jobs == [f"{experiment.id}{DEEP}{output.name}" for output in experiment.outputs]
+    assert queue.states(jobs) == {}
+    assert told == jobs
     with pytest.raises(DeletedError, match="This experiment was deleted by its owner"):
         service.experiments.get(experiment.id)
 
@@ -101,13 +89,14 @@ def test_one_that_ends_before_it_is_cancelled_is_left_as_it_ended(
     service = make_service()
     told: list[str] = []
     monkeypatch.setattr(service.watching, "notify", told.append)
-    monkeypatch.setattr(service._executor, "cancel", told.append)
     experiment = service.submission.submit(a_request(service.samples.add(upload, None)), OWNER)
     get = service._store.get
 
     def raced(experiment_id: str) -> Experiment:
         found = get(experiment_id)
-        service._store.fail(experiment_id, "a reason")
+        lease = service._queue.lease("tests", alone=True)
+        assert lease is not None
+        service._store.fail(lease, "a reason")
         return found
 
     monkeypatch.setattr(service._store, "get", raced)

@@ -16,6 +16,7 @@ from app.experiments.housekeeping import Housekeeping, Pruned
 from app.experiments.model import Experiment, Output, Sample, Status
 from app.store.blobs import FileBlobs
 from app.store.sql import SqlStore
+from tests.experiments.jobs import lease_of
 from tests.store.records import a_sample, an_experiment, an_output
 
 NOW = datetime(2026, 3, 1, 12, tzinfo=UTC)
@@ -65,10 +66,11 @@ def finished(store: SqlStore, blobs: FileBlobs, monkeypatch: pytest.MonkeyPatch)
     def finish(sample: Sample, at: datetime, **values: Any) -> Experiment:
         experiment = an_experiment(sample, **values)
         store.add(experiment)
-        store.start(experiment.id)
+        lease = lease_of(store, experiment.id)
+        store.start(lease)
         texture = an_output(digest=blobs.put(experiment.id.encode()))
         monkeypatch.setattr("app.store.sql.now", lambda: at)
-        assert store.succeed(experiment.id, [texture], {}, {}, {})
+        assert store.succeed(lease, [texture], {}, {}, {})
         return store.get(experiment.id)
 
     return finish
@@ -153,7 +155,7 @@ def test_an_unfinished_experiment_stays_however_old_it_is(
     experiment = an_experiment(a_kept_sample(), created_at=NOW - 1000 * OLDER_THAN)
     store.add(experiment)
     if status is Status.RUNNING:
-        store.start(experiment.id)
+        store.start(lease_of(store, experiment.id))
     assert keeper.prune(timedelta(0)) == Pruned(0, 0, 0)
     assert store.get(experiment.id).status is status
 

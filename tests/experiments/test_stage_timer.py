@@ -4,7 +4,7 @@ import pytest
 
 from app.experiments import stage_timer
 from app.experiments.stage_timer import StageTimer
-from tests.experiments.jobs import silent
+from tests.experiments.test_diagnostics import silent
 
 
 class Clock:

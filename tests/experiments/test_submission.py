@@ -94,14 +94,14 @@ def test_of_two_presses_at_once_the_slower_gets_the_fasters_experiment(
     faster: list[Experiment] = []
     add = idle._store.add
 
-    def raced(experiment: Experiment) -> None:
+    def raced(experiment: Experiment, client: str) -> None:
         faster.append(replace(experiment, depth=16))
-        add(faster[0])
-        add(experiment)
+        add(faster[0], client)
+        add(experiment, client)
 
     monkeypatch.setattr(idle._store, "add", raced)
     assert idle.submission.submit(a_request(waiting), OWNER, PRESS) == faster[0]
-    assert idle.waiting == 0  # it is queued by who was faster
+    assert idle.waiting == 1  # it is queued by who was faster
 
 
 def test_an_identifier_that_is_taken_without_a_press_is_an_error(

@@ -71,8 +71,8 @@ def test_a_caller_who_hangs_up_while_it_is_submitted_leaves_nothing_behind(
     added, hung_up = threading.Event(), threading.Event()
     add = service._store.add
 
-    def slow_add(experiment: Experiment) -> None:
-        add(experiment)
+    def slow_add(experiment: Experiment, client: str) -> None:
+        add(experiment, client)
         added.set()
         assert hung_up.wait(SECONDS)
 

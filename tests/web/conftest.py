@@ -17,12 +17,15 @@ import uvicorn
 from fastapi import FastAPI
 from PIL import Image
 
+from app.errors import CancelledError
+from app.experiments.heartbeat import Heartbeat
+from app.experiments.model import Lease
 from app.experiments.service import Service
 from app.gallery.exhibits import exhibits
 from app.main import create_app
-from app.methods.context import Progress
 from app.settings import ROOT, Settings
 from app.store.blobs import FileBlobs
+from app.store.queue import SqlQueue
 from app.store.sql import SqlStore
 from app.worker import run_job
 from tests.executor.inline import InlineExecutor
@@ -77,10 +80,17 @@ class Gate:
         self._open = threading.Event()
         self._open.set()
 
-    def __call__(self, settings: Settings, job: str, progress: Progress) -> None:
-        while not self._open.wait(0.01):
-            progress("held", self.held)
-        run_job(settings, job, lambda stage, part: progress(stage, max(part, self.held)))  # never back
+    def __call__(self, settings: Settings, lease: Lease) -> None:
+        store = SqlStore(settings.sql_url)
+        try:
+            with Heartbeat(SqlQueue(store.database), lease, settings.time_limit) as progress:
+                while not self._open.wait(0.01):
+                    progress("held", self.held)
+        except CancelledError:
+            return
+        finally:
+            store.close()
+        run_job(settings, lease)
 
     @contextmanager
     def closed(self) -> Iterator[None]:
@@ -159,7 +169,8 @@ def serve(directory: Path, **changed: Any) -> Iterator[Site]:
     gate = Gate()
     settings.data_dir.mkdir()
     store, blobs = SqlStore(settings.sql_url), FileBlobs(settings.data_dir / "files")
-    service = Service(store, blobs, InlineExecutor(settings, gate), settings)
+    queue = SqlQueue(store.database)
+    service = Service(store, queue, blobs, InlineExecutor(settings, gate, queue), settings)
     app = create_app(settings, service)
     with serving(app) as url, httpx.Client(base_url=url, timeout=PATIENCE, verify=False) as client:
         until(lambda: client.get("/readyz").status_code == 200 and client.get("/api/v1/samples").json()["samples"])
@@ -257,7 +268,8 @@ def gallery(tmp_path_factory: pytest.TempPathFactory) -> Iterator[httpx.Client]:
     settings = Settings(data_dir=directory / "data", samples_dir=directory, threads=1)
     settings.data_dir.mkdir()
     store, blobs = SqlStore(settings.sql_url), FileBlobs(settings.data_dir / "files")
-    service = Service(store, blobs, InlineExecutor(settings, run_job), settings)
+    queue = SqlQueue(store.database)
+    service = Service(store, queue, blobs, InlineExecutor(settings, run_job, queue), settings)
     made = {name: exhibit for name, exhibit in exhibits().items() if MADE_IN_GALLERY.issuperset(dict(exhibit.inputs))}
     with serving(create_app(settings, service)) as url:
         with pytest.MonkeyPatch.context() as patch:

@@ -5,8 +5,10 @@ import threading
 from typing import cast
 
 import httpx
+import pytest
 from prometheus_client.parser import text_string_to_metric_families
 
+from app.errors import DATABASE, DISK_SPACE, ENGINE, STORAGE, UnavailableError
 from app.experiments.service import Service
 from app.main import create_app
 
@@ -16,13 +18,35 @@ def test_alive_and_ready(site):
     assert site.client.get("/readyz").json() == {"status": "ready"}
 
 
+class Starting:
+    """As much of a service as health asks, without workers."""
+
+    ready = False
+
+    def __init__(self) -> None:
+        self.availability = self
+
+    def missing(self) -> UnavailableError | None:
+        return None if self.ready else UnavailableError(ENGINE, "No worker is there.")
+
+    def close(self) -> None: ...
+
+
+@pytest.mark.parametrize("part", [DATABASE, STORAGE, DISK_SPACE, ENGINE])
+def test_what_is_missing_is_named(site, monkeypatch, part):
+    """By a word for programs and in a sentence for people."""
+    error = UnavailableError(part, "It is away.")
+    monkeypatch.setattr(site.service.availability, "missing", lambda: error)
+    response = site.client.get("/readyz")
+    assert (response.status_code, response.headers["Retry-After"]) == (503, "1")
+    assert (response.json()["part"], response.json()["detail"]) == (part, "It is away.")
+
+
 def test_alive_long_before_ready(site, serving, until):
     """The web is up while the engine starts, and says that it cannot take work."""
     start = threading.Event()
 
-    class Slow:
-        ready = False
-
+    class Slow(Starting):
         def start(self) -> None:
             start.wait(20)
             self.ready = True
@@ -40,13 +64,9 @@ def test_alive_long_before_ready(site, serving, until):
 
 
 def test_an_engine_that_does_not_start_is_logged_and_leaves_the_web_up(site, serving, until, caplog):
-    class Broken:
-        ready = False
-
+    class Broken(Starting):
         def start(self) -> None:
             raise OSError("no scheduler answers at tcp://nowhere:8786")
-
-        def close(self) -> None: ...
 
     with serving(create_app(site.settings, cast(Service, Broken()))) as url:
         until(lambda: "The engine did not start" in caplog.text)

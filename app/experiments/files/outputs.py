@@ -7,7 +7,7 @@ from typing import Literal, Protocol
 from app.errors import AppError, BusyError, InvalidInputError, NotFoundError
 from app.experiments.files.renditions import DERIVED, PNG, Renditions, VideoFormat, check_deep
 from app.experiments.model import Experiment, Output, deep_job, deep_name
-from app.experiments.ports import BlobStore, Executor, ExperimentStore
+from app.experiments.ports import BlobStore, Executor, ExperimentStore, JobQueue
 from app.experiments.queue import check_queue
 from app.experiments.watching import Watching
 from app.images.convert import Format, read_depth
@@ -60,7 +60,7 @@ class Outputs:
 
     Parameters
     ----------
-    store, blobs, executor, renditions, watching
+    store, queue, blobs, executor, renditions, watching
         Those of the service.
     queue_limit : int
         Jobs that may wait before another output at 16 bits is refused.
@@ -69,6 +69,7 @@ class Outputs:
     def __init__(
         self,
         store: ExperimentStore,
+        queue: JobQueue,
         blobs: BlobStore,
         executor: Executor,
         renditions: Renditions,
@@ -77,12 +78,12 @@ class Outputs:
         queue_limit: int,
     ) -> None:
         self._store = store
+        self._queue = queue
         self._blobs = blobs
         self._executor = executor
         self._renditions = renditions
         self._watching = watching
         self._queue_limit = queue_limit
-        self._failures: dict[str, str] = {}
 
     def get(self, experiment_id: str, name: str) -> tuple[Output, Path]:
         """Find an output and its file. Raises `NotFoundError`, also while it is not there yet."""
@@ -118,10 +119,6 @@ class Outputs:
         assert file_format != "mp4"
         return await asyncio.to_thread(self._renditions.convert, output, file_format or "png", depth)
 
-    def record_failure(self, job: str, failure: str) -> None:
-        """Remember why an output at 16 bits could not be made, for the request that waits for it."""
-        self._failures[job] = failure
-
     def _output(self, experiment: Experiment, name: str) -> Output:
         output = experiment.output(name)
         if output is not None:
@@ -140,14 +137,17 @@ class Outputs:
         deep = experiment.output(name)
         if deep is not None:
             return deep
-        if self._executor.snapshot(job) is None:
-            check_queue(self._executor, self._queue_limit)
-            self._failures.pop(job, None)
-            self._executor.submit(job)
+        await asyncio.to_thread(self._enqueue, job, experiment.owner)
         if not await self._watching.wait_until_left(job, DEEP_SECONDS):
             raise BusyError(f"The {output.name} at 16 bits is still being computed. Try again in a minute.")
         deep = (await asyncio.to_thread(self._store.get, experiment.id)).output(name)
         if deep is None:
-            words = f"The {output.name} at 16 bits could not be computed. Try again."
-            raise AppError(self._failures.pop(job, words))
+            failure = await asyncio.to_thread(self._queue.failure, job)
+            raise AppError(failure or f"The {output.name} at 16 bits could not be computed. Try again.")
         return deep
+
+    def _enqueue(self, job: str, client: str) -> None:
+        if not self._queue.states([job]):
+            check_queue(self._queue, self._queue_limit)
+            self._queue.enqueue(job, client)
+            self._executor.wake()

@@ -98,12 +98,15 @@ def test_uploads_that_are_decoded_hold_nobody_up(site, serving, picture, until):
         ready = True
         waiting = 0
         begun = 0
-        samples = experiments = property(lambda self: self)
+        samples = experiments = availability = property(lambda self: self)
         go_on = threading.Event()
 
         def start(self) -> None: ...
 
         def close(self) -> None: ...
+
+        def missing(self) -> None:
+            return None
 
         def counts(self) -> dict[str, int]:
             return {}
