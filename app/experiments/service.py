@@ -17,6 +17,7 @@ from app.experiments.model import DEEP, Lease, Status
 from app.experiments.ports import BlobStore, Executor, ExperimentStore, JobQueue
 from app.experiments.retention import Retention
 from app.experiments.samples import Samples
+from app.experiments.shares import Shares
 from app.experiments.submission import Submission
 from app.experiments.transient import Transient
 from app.experiments.watching import Watching
@@ -60,7 +61,14 @@ class Service:
         self.watching = Watching(store, queue.states)
         #: Files of experiments, in every format and depth.
         self.outputs = Outputs(
-            store, queue, blobs, executor, self.renditions, self.watching, queue_limit=settings.queue_limit
+            store,
+            queue,
+            blobs,
+            executor,
+            self.renditions,
+            self.watching,
+            queue_limit=settings.queue_limit,
+            shares=Shares(queue, settings),
         )
         #: When experiments go by themselves.
         self.retention = Retention.by(settings)

@@ -8,6 +8,7 @@ from app.experiments.ports import Executor, ExperimentStore, JobQueue
 from app.experiments.preparation import NewExperiment, memory_of, prepare
 from app.experiments.queue import check_queue
 from app.experiments.samples import Samples
+from app.experiments.shares import Shares
 from app.experiments.tokens import derive_identifier, new_identifier, new_token, token_digest
 from app.methods.allowed import Allowed
 from app.settings import Settings
@@ -46,6 +47,7 @@ class Submission:
         self._samples = samples
         self._allowed = Allowed.by(settings)
         self._queue_limit = settings.queue_limit
+        self._shares = Shares(queue, settings)
 
     def check(self, request: NewExperiment) -> Plan:
         """Plan an experiment without keeping it. Raises as `submit` does, but for `BusyError`."""
@@ -91,6 +93,8 @@ class Submission:
             If the texture would be too large.
         BusyError
             If too many experiments wait already.
+        QuotaError
+            If too many of them are the client's own.
         """
         owner = token_digest(owner_token)
         identifier = new_identifier()
@@ -104,9 +108,11 @@ class Submission:
             except DeletedError:
                 pass  # pressed anew since
         check_queue(self._queue, self._queue_limit)
+        client = owner if client is None else client
+        self._shares.check(client)
         experiment = replace(self._prepare(request, owner), id=identifier, transient=transient)
         try:
-            self._store.add(experiment, owner if client is None else client)
+            self._store.add(experiment, client)
         except ConflictError:
             if press is None:
                 raise

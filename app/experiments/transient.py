@@ -51,6 +51,7 @@ class Transient:
         output: str = "texture",
         file_format: AnyFormat | None = None,
         depth: Literal[8, 16] | None = None,
+        client: str | None = None,
     ) -> tuple[bytes, str]:
         """Make an output straight from files: its bytes and media type. Nothing of it is kept, the files included.
 
@@ -64,6 +65,8 @@ class Transient:
         parameters : mapping
         output, file_format, depth
             The name of the output that is the answer, and what it is written as.
+        client : str, optional
+            Who asks, for clients take turns.
 
         Raises
         ------
@@ -71,9 +74,8 @@ class Transient:
             Any of those of `Samples.add`, `Submission.submit` and `Outputs.convert`; `ConflictError` if the run failed.
         """
         # It goes on to its end if the caller hangs up: only then is known what to forget.
-        begun = asyncio.ensure_future(
-            asyncio.to_thread(self._begin, uploads, method, crops, frames, parameters, output, file_format, depth)
-        )
+        what = (uploads, method, crops, frames, parameters, output, file_format, depth, client)
+        begun = asyncio.ensure_future(asyncio.to_thread(self._begin, *what))
         try:
             experiment = await asyncio.shield(begun)
             finished = await self._watching.wait(experiment.id, float("inf"))
@@ -97,6 +99,7 @@ class Transient:
         output: str,
         file_format: AnyFormat | None,
         depth: Literal[8, 16] | None,
+        client: str | None,
     ) -> Experiment:
         samples: list[Sample] = []
         try:
@@ -115,7 +118,7 @@ class Transient:
                 NewInput(sample.id, crop, time) for sample, crop, time in zip_longest(samples, crops, frames)
             )
             return self._submission.submit_transient(
-                NewExperiment(method, inputs, parameters, listed=False, answer=answer)
+                NewExperiment(method, inputs, parameters, listed=False, answer=answer), client
             )
         except BaseException:
             for sample in samples:

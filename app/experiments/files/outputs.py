@@ -9,6 +9,7 @@ from app.experiments.files.renditions import DERIVED, PNG, Renditions, VideoForm
 from app.experiments.model import Experiment, Output, deep_job, deep_name
 from app.experiments.ports import BlobStore, Executor, ExperimentStore, JobQueue
 from app.experiments.queue import check_queue
+from app.experiments.shares import Shares
 from app.experiments.watching import Watching
 from app.images.convert import Format, read_depth
 from app.methods.effects import possible_output, refuse_deep
@@ -64,6 +65,8 @@ class Outputs:
         Those of the service.
     queue_limit : int
         Jobs that may wait before another output at 16 bits is refused.
+    shares : Shares
+        And those of one client.
     """
 
     def __init__(
@@ -76,6 +79,7 @@ class Outputs:
         watching: Watching,
         *,
         queue_limit: int,
+        shares: Shares,
     ) -> None:
         self._store = store
         self._queue = queue
@@ -84,6 +88,7 @@ class Outputs:
         self._renditions = renditions
         self._watching = watching
         self._queue_limit = queue_limit
+        self._shares = shares
 
     def get(self, experiment_id: str, name: str) -> tuple[Output, Path]:
         """Find an output and its file. Raises `NotFoundError`, also while it is not there yet."""
@@ -94,11 +99,17 @@ class Outputs:
         return output, self._blobs.path(output.digest)
 
     async def convert(
-        self, experiment_id: str, name: str, file_format: AnyFormat | None, depth: Literal[8, 16] | None = None
+        self,
+        experiment_id: str,
+        name: str,
+        file_format: AnyFormat | None,
+        depth: Literal[8, 16] | None = None,
+        client: str | None = None,
     ) -> tuple[Path, str]:
         """Convert an output to another format and depth; its file and media type.
 
-        By default it is as it is stored, and of a video WebM. At 16 bits it is computed when first asked for.
+        By default it is as it is stored, and of a video WebM. At 16 bits it is computed when first asked for, in the
+        turn of this client; by default in that of the experiment's owner.
 
         Raises
         ------
@@ -106,13 +117,15 @@ class Outputs:
             If the format or the output does not come at this depth.
         BusyError
             If the engine did not get to it soon enough; trying again later helps.
+        QuotaError
+            If too much of this client waits already.
         """
         experiment = await asyncio.to_thread(self._store.get, experiment_id)
         output = self._output(experiment, name)
         output = self._output(experiment, name_of_file(output, file_format or ("webm" if output.video else None)))
         if depth == 16:
             check_deep(file_format)
-            output = await self._deep(experiment, output)
+            output = await self._deep(experiment, output, experiment.owner if client is None else client)
         if output.media_type != PNG:
             return self._blobs.path(output.digest), output.media_type
         assert file_format != "webm"  # `name_of_file` lets these through for videos only
@@ -128,7 +141,7 @@ class Outputs:
         names = ", ".join(output.name for output in experiment.outputs if output.listed)
         raise NotFoundError(f"This experiment has no output {name!r}. It has: {names or 'none'}.")
 
-    async def _deep(self, experiment: Experiment, output: Output) -> Output:
+    async def _deep(self, experiment: Experiment, output: Output, client: str) -> Output:
         """The same output at 16 bits; computed from the samples, in a job of its own, if it is not there yet."""
         if not output.video and read_depth(self._blobs.path(output.digest)) == 16:
             return output
@@ -137,7 +150,7 @@ class Outputs:
         deep = experiment.output(name)
         if deep is not None:
             return deep
-        await asyncio.to_thread(self._enqueue, job, experiment.owner)
+        await asyncio.to_thread(self._enqueue, job, client)
         if not await self._watching.wait_until_left(job, DEEP_SECONDS):
             raise BusyError(f"The {output.name} at 16 bits is still being computed. Try again in a minute.")
         deep = (await asyncio.to_thread(self._store.get, experiment.id)).output(name)
@@ -149,5 +162,6 @@ class Outputs:
     def _enqueue(self, job: str, client: str) -> None:
         if not self._queue.states([job]):
             check_queue(self._queue, self._queue_limit)
+            self._shares.check(client)
             self._queue.enqueue(job, client)
             self._executor.wake()

@@ -19,6 +19,7 @@ from app.methods.registry import METHODS, refuse_unknown
 from app.web.api.bodies import IDENTIFIER, Body, InputBody, ListedBody, without_fraction
 from app.web.api.openapi import EXAMPLE_METHOD, EXAMPLE_SAMPLE, OWNER, parameters_schema, problems
 from app.web.api.records import API, ExperimentList, ExperimentRecord, PlanRecord
+from app.web.clients import client_of
 from app.web.deps import ServiceDep, TokenDep, base_url, remember_owner
 from app.web.limits import EXPERIMENTS, VIEWS, take
 from app.web.shutdown import unless_stopping
@@ -159,7 +160,8 @@ async def submit_experiment(
     take(request, EXPERIMENTS)
     owner = token or new_token()
     try:
-        experiment = await run_in_threadpool(service.submission.submit, body.to_request(), owner)
+        client = client_of(request).name
+        experiment = await run_in_threadpool(service.submission.submit, body.to_request(), owner, client=client)
     except (NotFoundError, DeletedError) as error:  # this address exists; what does not is a sample
         raise InvalidInputError(error.message, "inputs") from None
     seconds = wait_seconds(prefer)

@@ -17,6 +17,7 @@ from app.experiments.model import Experiment, Status
 from app.web.api.experiments import ExperimentId, record_of
 from app.web.api.openapi import problems
 from app.web.api.records import API
+from app.web.clients import client_of
 from app.web.deps import ServiceDep
 from app.web.file_response import FOREVER, FOREVER_FOR_ME, SUFFIXES, file_response, matches, not_modified
 from app.web.limits import CONVERSIONS, DEEP, VIEWS, take
@@ -84,7 +85,9 @@ async def experiment_output(
         if matches(request, tag):
             return not_modified(tag, cache)
         take(request, _kind(format, depth))
-        path, media_type = await service.outputs.convert(experiment_id, name, format, DEPTHS.get(depth))
+        path, media_type = await service.outputs.convert(
+            experiment_id, name, format, DEPTHS.get(depth), client_of(request).name
+        )
     return file_response(
         request,
         path,

@@ -17,6 +17,7 @@ from app.methods.outputs import OutputSpec
 from app.methods.registry import METHODS
 from app.web.api.openapi import form_parameters, problems
 from app.web.api.records import API
+from app.web.clients import client_of
 from app.web.deps import ServiceDep
 from app.web.file_response import SUFFIXES
 from app.web.limits import EXPERIMENTS, take, take_upload
@@ -132,7 +133,7 @@ async def synthesize(request: Request, service: ServiceDep) -> Response:
     take(request, EXPERIMENTS)
     async with receive_form(request, FILES) as form:
         arguments = _read_arguments(request, form)
-        running = asyncio.ensure_future(service.transient.synthesize(**arguments))
+        running = asyncio.ensure_future(service.transient.synthesize(**arguments, client=client_of(request).name))
         hung_up = asyncio.ensure_future(_wait_for_disconnect(request))
         try:
             await asyncio.wait({running, hung_up}, return_when=asyncio.FIRST_COMPLETED)

@@ -21,6 +21,7 @@ from app.methods.fields import fields
 from app.methods.model import Method
 from app.methods.params import MovingParams
 from app.methods.registry import METHODS, method
+from app.web.clients import client_of
 from app.web.deps import ServiceDep, TokenDep, base_url, choose_owner, read_press, remember_owner
 from app.web.form.address import form_url, input_values, sample_url
 from app.web.form.inputs import max_inputs
@@ -230,7 +231,8 @@ def again(
     inputs = tuple(NewInput(source.sample, source.crop, source.frames) for source in experiment.inputs)
     owner = choose_owner(token, key)
     listed = experiment.listed or is_exhibit(experiment)
-    run = service.submission.submit(NewExperiment(name, inputs, parameters, listed), owner, key)
+    wanted = NewExperiment(name, inputs, parameters, listed)
+    run = service.submission.submit(wanted, owner, key, client=client_of(request).name)
     other = name != experiment.method
     response = RedirectResponse(
         f"/compare/{experiment.id}/{run.id}" if other else f"/experiments/{run.id}", HTTP_303_SEE_OTHER

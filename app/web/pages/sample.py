@@ -15,6 +15,7 @@ from app.experiments.service import Service
 from app.methods.registry import method
 from app.samples import read_catalogue
 from app.settings import Settings
+from app.web.clients import client_of
 from app.web.deps import (
     ServiceDep,
     SettingsDep,
@@ -130,7 +131,7 @@ def _submit(
     owner = choose_owner(token, press)
     try:
         take(request, EXPERIMENTS)
-        experiment = service.submission.submit(submission.request, owner, press)
+        experiment = service.submission.submit(submission.request, owner, press, client=client_of(request).name)
     except AppError as error:
         draft = with_error(submission, method(submission.request.method), error)
         with suppress(AppError):
