@@ -120,7 +120,7 @@ def main() -> None:
         for seed in range(ROUNDS):
             body = {"method": "efros-leung", "inputs": [{"sample": SAMPLE, "crop": SMALL}]}
             answer = service.client.post("/api/v1/experiments", json={**body, "parameters": {"seed": seed, **LONG}})
-            record = answer.raise_for_status().json()["url"]
+            record = f"/api/v1/experiments/{answer.raise_for_status().json()['id']}"
             alone.append(archive(service))
             with watched(service, f"{record}/events", rates):
                 beside.append(archive(service))

@@ -1,15 +1,24 @@
 """File responses: ETag, Range, If-None-Match (304) and Content-Disposition."""
 
 import re
+from datetime import datetime
+from email.utils import format_datetime
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
-from fastapi import Request
+from fastapi import Query, Request
 from starlette.exceptions import HTTPException
 from starlette.responses import FileResponse, Response
 
-FOREVER = "public, max-age=31536000, immutable"
-FOREVER_FOR_ME = "private, max-age=31536000, immutable"
+Version = Annotated[
+    str | None,
+    Query(
+        alias="v",
+        max_length=64,
+        description="Version of the bytes, as in the addresses on pages: while it fits, the answer is `immutable`; "
+        "else caches ask, with its `ETag`, whether it is still the same.",
+    ),
+]
 SUFFIXES = {
     "image/png": ".png",
     "image/jpeg": ".jpg",
@@ -27,6 +36,22 @@ def matches(request: Request, tag: str) -> bool:
     return sent.strip() == "*" or f'"{tag}"' in [part.strip().removeprefix("W/") for part in sent.split(",")]
 
 
+def cache_control(version: str | None, current: str, *, public: bool) -> str:
+    """Say who may keep a file, and for how long: for ever under an address that names these very bytes only.
+
+    Parameters
+    ----------
+    version : str, optional
+        What the address says.
+    current : str
+        What it says if it was made of the file of today.
+    public : bool
+        Whether everybody may see it: caches that several people share keep nothing else.
+    """
+    keep = "max-age=31536000, immutable" if version == current else "no-cache"
+    return f"{'public' if public else 'private'}, {keep}"
+
+
 def not_modified(tag: str, cache: str) -> Response:
     return Response(status_code=304, headers={"ETag": f'"{tag}"', "Cache-Control": cache})
 
@@ -39,9 +64,12 @@ def file_response(
     tag: str,
     filename: str,
     cache: str,
+    modified: datetime,
     disposition: Literal["inline", "attachment"] = "inline",
 ) -> Response:
-    """Answer with the file, the part of it that was range_header for, or 304.
+    """Answer with the file, the part of it that was asked for, or 304.
+
+    ``modified``, in UTC, is when its original was made: the file itself may be a copy that is made again and again.
 
     Raises
     ------
@@ -53,7 +81,7 @@ def file_response(
     _keep_usable_range(request, path.stat().st_size, tag)
     return FileResponse(
         path,
-        headers={"ETag": f'"{tag}"', "Cache-Control": cache},
+        headers={"ETag": f'"{tag}"', "Cache-Control": cache, "Last-Modified": format_datetime(modified, usegmt=True)},
         media_type=media_type,
         filename=filename,
         content_disposition_type=disposition,

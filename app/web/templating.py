@@ -13,6 +13,7 @@ from starlette.responses import Response
 from app.experiments.meter import MICRO, STRUCTURED, interpret
 from app.methods.registry import METHODS
 from app.settings import ROOT
+from app.web.pictures.addresses import output_url, sample_image_url, sample_video_url
 from app.web.prose import mathml, prose
 
 TEMPLATES = Jinja2Templates(directory=Path(ROOT) / "templates")
@@ -48,6 +49,9 @@ def meter_place(delta: float) -> float:
 
 TEMPLATES.env.filters.update(label=label, reading=interpret, meter_place=meter_place, mathml=mathml, prose=prose)
 TEMPLATES.env.globals.update(meter_limits=(MICRO, STRUCTURED), meter_end=METER_END)
+TEMPLATES.env.globals.update(
+    output_url=output_url, sample_image_url=sample_image_url, sample_video_url=sample_video_url
+)
 
 
 def render(request: Request, template: str, context: Mapping[str, Any], status: int = 200) -> Response:

@@ -34,7 +34,7 @@ def test_a_method_is_run_from_its_page(visitors: Any, site: Any, shown_pixels: S
     expect(page.get_by_role("heading", name="Time by stage")).to_be_visible()
     identifier = page.url.rsplit("/", 1)[-1]
     texture = site.client.get(f"/api/v1/experiments/{identifier}").json()["outputs"][0]
-    shown = 'video:has(source[src$="/outputs/texture"])' if METHODS[name].moving else 'img[src*="/outputs/texture"]'
+    shown = 'video:has(source[src*="/outputs/texture?"])' if METHODS[name].moving else 'img[src*="/outputs/texture"]'
     pixels = shown_pixels(page, shown)
     assert pixels.shape == (texture["height"], texture["width"], 3)
     assert pixels.std() > 4  # grey levels; the evenest sample of any page has about 8

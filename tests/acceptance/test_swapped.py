@@ -97,7 +97,7 @@ def assert_plays(page: Page, frames: np.ndarray, shown_pixels: Shown, until: Cal
         expect(output).to_have_text(f"{number} / {len(frames)}")
 
         def stands(frame: np.ndarray = frames[number - 1]) -> bool:
-            shown = shown_pixels(page, '.stage video:has(source[src$="/outputs/texture"])')
+            shown = shown_pixels(page, '.stage video:has(source[src*="/outputs/texture?"])')
             return bool(np.abs(shown.astype(int) - frame).mean() < NOISE)
 
         until(stands, f"frame {number} of the texture")

@@ -1,6 +1,7 @@
 """File cache: files that can be made again, bounded in size and safe to delete at any time."""
 
 import os
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -72,7 +73,7 @@ class FileCache:
             for path in self._directory.iterdir():
                 with suppress(FileNotFoundError):  # someone else removed it
                     state = path.stat()
-                    found.append((state.st_mtime, state.st_size, path))
+                    found.append((state.st_atime, state.st_size, path))
             total = sum(size for _, size, _ in found)
             for _, size, path in sorted(found):
                 if total <= self._max_bytes * 9 // 10:
@@ -82,9 +83,9 @@ class FileCache:
 
 
 def _touch(path: Path) -> bool:
-    """Note that a file is used; whether it is there."""
+    """Note that a file is used, as its time of access; whether it is there."""
     try:
-        os.utime(path)
+        os.utime(path, ns=(time.time_ns(), path.stat().st_mtime_ns))
     except FileNotFoundError:
         return False
     return True

@@ -120,12 +120,56 @@ class Outputs:
         QuotaError
             If too much of this client waits already.
         """
-        experiment = await asyncio.to_thread(self._store.get, experiment_id)
+        output = await self.make_source(experiment_id, name, file_format, depth, client)
+        return await self.render(output, file_format, depth)
+
+    def find_source(
+        self, experiment_id: str, name: str, file_format: AnyFormat | None, depth: Literal[8, 16] | None
+    ) -> Output | None:
+        """Find what `convert` converts: a stored output; None while it is to be computed at 16 bits.
+
+        Raises
+        ------
+        InvalidInputError
+            As `convert`.
+        """
+        experiment = self._store.get(experiment_id)
         output = self._output(experiment, name)
         output = self._output(experiment, name_of_file(output, file_format or ("webm" if output.video else None)))
-        if depth == 16:
-            check_deep(file_format)
-            output = await self._deep(experiment, output, experiment.owner if client is None else client)
+        if depth != 16:
+            return output
+        check_deep(file_format)
+        if not output.video and read_depth(self._blobs.path(output.digest)) == 16:
+            return output
+        refuse_deep(possible_output(method_named(experiment.method), output.name), experiment.depth)
+        return experiment.output(deep_name(output.name))
+
+    async def make_source(
+        self,
+        experiment_id: str,
+        name: str,
+        file_format: AnyFormat | None,
+        depth: Literal[8, 16] | None,
+        client: str | None = None,
+    ) -> Output:
+        """Find what `convert` converts, or have it computed first, in a job of its own. Raises as `convert`."""
+        output = await asyncio.to_thread(self.find_source, experiment_id, name, file_format, depth)
+        if output is not None:
+            return output
+        job = deep_job(experiment_id, name)
+        await asyncio.to_thread(self._enqueue, experiment_id, job, client)
+        if not await self._watching.wait_until_left(job, DEEP_SECONDS):
+            raise BusyError(f"The {name} at 16 bits is still being computed. Try again in a minute.")
+        output = await asyncio.to_thread(self.find_source, experiment_id, name, file_format, depth)
+        if output is None:
+            failure = await asyncio.to_thread(self._queue.failure, job)
+            raise AppError(failure or f"The {name} at 16 bits could not be computed. Try again.")
+        return output
+
+    async def render(
+        self, output: Output, file_format: AnyFormat | None, depth: Literal[8, 16] | None
+    ) -> tuple[Path, str]:
+        """Write a stored output in this format and depth; its file and media type."""
         if output.media_type != PNG:
             return self._blobs.path(output.digest), output.media_type
         assert file_format != "webm"  # `name_of_file` lets these through for videos only
@@ -141,27 +185,10 @@ class Outputs:
         names = ", ".join(output.name for output in experiment.outputs if output.listed)
         raise NotFoundError(f"This experiment has no output {name!r}. It has: {names or 'none'}.")
 
-    async def _deep(self, experiment: Experiment, output: Output, client: str) -> Output:
-        """The same output at 16 bits; computed from the samples, in a job of its own, if it is not there yet."""
-        if not output.video and read_depth(self._blobs.path(output.digest)) == 16:
-            return output
-        refuse_deep(possible_output(method_named(experiment.method), output.name), experiment.depth)
-        name, job = deep_name(output.name), deep_job(experiment.id, output.name)
-        deep = experiment.output(name)
-        if deep is not None:
-            return deep
-        await asyncio.to_thread(self._enqueue, job, client)
-        if not await self._watching.wait_until_left(job, DEEP_SECONDS):
-            raise BusyError(f"The {output.name} at 16 bits is still being computed. Try again in a minute.")
-        deep = (await asyncio.to_thread(self._store.get, experiment.id)).output(name)
-        if deep is None:
-            failure = await asyncio.to_thread(self._queue.failure, job)
-            raise AppError(failure or f"The {output.name} at 16 bits could not be computed. Try again.")
-        return deep
-
-    def _enqueue(self, job: str, client: str) -> None:
+    def _enqueue(self, experiment_id: str, job: str, client: str | None) -> None:
         if not self._queue.states([job]):
             check_queue(self._queue, self._queue_limit)
+            client = client or self._store.get(experiment_id).owner
             self._shares.check(client)
             self._queue.enqueue(job, client)
             self._executor.wake()

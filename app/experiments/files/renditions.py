@@ -7,6 +7,7 @@ from typing import Literal
 
 from app.errors import InvalidInputError, NotFoundError
 from app.experiments.files.cache import FileCache
+from app.experiments.files.versions import CONVERTER
 from app.experiments.model import Output, Sample, check_frame
 from app.experiments.ports import BlobStore
 from app.images.convert import (
@@ -59,16 +60,16 @@ class Renditions:
         check_frame(sample, frame)
         if size is None:
             return self._still(sample, frame), PNG
-        bound = next((step for step in SIZES if step >= size), SIZES[-1])
+        bound = rendition_bound(size)
         media_type = PNG if sample.transparent else "image/jpeg"
-        name = f"{_part(sample, frame)}-{bound}.{media_type.removeprefix('image/')}"
+        name = f"{_part(sample, frame)}-{bound}-{CONVERTER}.{media_type.removeprefix('image/')}"
         return self._cache.get(name, lambda: make_rendition(self._still(sample, frame), bound)[0]), media_type
 
     def _still(self, sample: Sample, frame: int) -> Path:
         stored = self._blobs.path(sample.digest)
         if not sample.moving:
             return stored
-        name = f"{_part(sample, frame)}.png"
+        name = f"{_part(sample, frame)}-{CONVERTER}.png"
         return self._cache.get(name, lambda: encode_png(read_frame(stored, frame, sample.width, sample.height)))
 
     def video(self, sample: Sample, file_format: VideoFormat) -> tuple[Path, str]:
@@ -90,7 +91,7 @@ class Renditions:
             pictures = (read_frame(stored, frame, sample.width, sample.height) for frame in range(sample.frames))
             write_video(map(flatten, pictures), path, file_format, count=sample.frames, rate=sample.rate)
 
-        name = f"{sample.digest}-{sample.height}-{sample.rate:g}.{file_format}"
+        name = f"{sample.digest}-{sample.height}-{sample.rate:g}-{CONVERTER}.{file_format}"
         return self._cache.file(name, write), f"video/{file_format}"
 
     def convert(self, output: Output, file_format: Format, depth: Literal[8, 16] | None = None) -> tuple[Path, str]:
@@ -100,7 +101,7 @@ class Renditions:
         narrowed: Literal[8] | None = 8 if depth == 8 and read_depth(stored) == 16 else None
         if output.media_type == media_type and not narrowed:
             return stored, media_type
-        name = f"{output.digest}{'-8' if narrowed else ''}.{file_format}"
+        name = f"{output.digest}{'-8' if narrowed else ''}-{CONVERTER}.{file_format}"
         return self._cache.get(name, lambda: convert(stored, file_format, narrowed)[0]), media_type
 
     def derive(self, name: str, crop: Output, texture: Output) -> tuple[Output, Path]:
@@ -109,12 +110,11 @@ class Renditions:
         Of a video it shows the first frame.
         """
         if name in POSTERS.values():
-            return self._poster(name, crop if name == POSTERS["crop"] else texture)
+            return self._poster(name, crop, texture)
         stored = self._picture(crop), self._picture(texture)
-        pair_digest = hashlib.sha256(f"{name} {crop.digest} {texture.digest}".encode()).hexdigest()
 
         def cached(part: str, make: Callable[[], bytes]) -> Path:
-            return self._cache.get(f"{texture.digest}-{crop.digest}{part}", make)
+            return self._cache.get(f"{texture.digest}-{crop.digest}-{CONVERTER}{part}", make)
 
         if name == PREVIEW_NAME:
             path, media_type = cached(name, lambda: make_link_preview(*stored)), "image/jpeg"
@@ -129,25 +129,40 @@ class Renditions:
 
             path, media_type = cached(name, both), "image/webp"
         width, height = PREVIEW if name == PREVIEW_NAME else _thumbnail_size(name, crop, texture)
-        size = path.stat().st_size
-        return Output(name, DERIVED[name], width, height, media_type=media_type, bytes=size, digest=pair_digest), path
+        size, digest = path.stat().st_size, derived_digest(name, crop, texture)
+        return Output(name, DERIVED[name], width, height, media_type=media_type, bytes=size, digest=digest), path
 
-    def _poster(self, name: str, output: Output) -> tuple[Output, Path]:
+    def _poster(self, name: str, crop: Output, texture: Output) -> tuple[Output, Path]:
+        output = crop if name == POSTERS["crop"] else texture
         path = self._picture(output)
-        digest = hashlib.sha256(f"{name} {output.digest}".encode()).hexdigest()
-        size = path.stat().st_size
+        size, digest = path.stat().st_size, derived_digest(name, crop, texture)
         return Output(name, DERIVED[name], output.width, output.height, bytes=size, digest=digest), path
 
     def _picture(self, output: Output) -> Path:
         stored = self._blobs.path(output.digest)
         if not output.video:
             return stored
-        return self._cache.get(f"{output.digest}-first.png", lambda: encode_png(read_first_frame(stored)))
+        return self._cache.get(f"{output.digest}-first-{CONVERTER}.png", lambda: encode_png(read_first_frame(stored)))
 
 
 def _part(sample: Sample, frame: int) -> str:
     """Begin a file's name; one file may be cut into frames of several heights."""
     return f"{sample.digest}-{sample.height}-{frame}" if sample.moving else sample.digest
+
+
+def rendition_bound(size: int) -> int:
+    """Bound the longer side of a sample's picture: the next of the sizes in which there are any."""
+    return next((step for step in SIZES if step >= size), SIZES[-1])
+
+
+def is_derived(name: str) -> bool:
+    """Whether an output is one of the pictures that stand for an experiment."""
+    return name in DERIVED
+
+
+def derived_digest(name: str, crop: Output, texture: Output) -> str:
+    """Name the bytes of a picture that stands for an experiment, by what it is made of and by what."""
+    return hashlib.sha256(f"{name} {crop.digest} {texture.digest} {CONVERTER}".encode()).hexdigest()
 
 
 def check_deep(file_format: Format | VideoFormat | None) -> None:

@@ -13,13 +13,15 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import FileResponse, Response, StreamingResponse
 
 from app.errors import ConflictError
+from app.experiments.exhibition import is_exhibit
+from app.experiments.files.versions import made_tag, made_version, stored_version
 from app.experiments.model import Experiment, Status
 from app.web.api.experiments import ExperimentId, record_of
 from app.web.api.openapi import problems
 from app.web.api.records import API
 from app.web.clients import client_of
 from app.web.deps import ServiceDep
-from app.web.file_response import FOREVER, FOREVER_FOR_ME, SUFFIXES, file_response, matches, not_modified
+from app.web.file_response import SUFFIXES, Version, cache_control, file_response, matches, not_modified
 from app.web.limits import CONVERSIONS, DEEP, VIEWS, take
 
 router = APIRouter(prefix=f"{API}/experiments", tags=["experiments"])
@@ -48,7 +50,8 @@ def file_name(experiment: Experiment, output: str, suffix: str) -> str:
     response_class=FileResponse,
     responses={
         200: {
-            "description": "The bytes. They never change, and the strong `ETag` says so.",
+            "description": "The bytes, named by the strong `ETag`: they change where an exhibit is made again or a "
+            "converter is another version. Under the `v` that fits they are `immutable`.",
             "content": _PICTURES,
             "headers": {"ETag": {"description": "Strong.", "schema": {"type": "string"}}},
         },
@@ -74,27 +77,31 @@ async def experiment_output(
         ),
     ] = None,
     download: Annotated[bool, Query(description="Ask browsers to save it instead of showing it.")] = False,
+    version: Version = None,
 ) -> Response:
     """Supports `Range`, `If-None-Match` and `HEAD`."""
     experiment = await run_in_threadpool(service.experiments.get, experiment_id)
     output, path = await run_in_threadpool(service.outputs.get, experiment_id, name)
-    media_type, tag = output.media_type, output.digest
-    cache = FOREVER if experiment.listed else FOREVER_FOR_ME
+    media_type, tag, current = output.media_type, output.digest, stored_version(output.digest)
+    public = experiment.listed or is_exhibit(experiment)
     if format is not None or depth is not None:
-        tag = f"{tag}-{format or ''}{depth or ''}"
-        if matches(request, tag):
-            return not_modified(tag, cache)
+        wanted = (experiment_id, name, format, DEPTHS.get(depth))
+        source = await run_in_threadpool(service.outputs.find_source, *wanted)
+        if source is not None and matches(request, made_tag(source.digest, format, depth)):
+            cache = cache_control(version, made_version(source.digest), public=public)
+            return not_modified(made_tag(source.digest, format, depth), cache)
         take(request, _kind(format, depth))
-        path, media_type = await service.outputs.convert(
-            experiment_id, name, format, DEPTHS.get(depth), client_of(request).name
-        )
+        source = source or await service.outputs.make_source(*wanted, client_of(request).name)
+        tag, current = made_tag(source.digest, format, depth), made_version(source.digest)
+        path, media_type = await service.outputs.render(source, format, DEPTHS.get(depth))
     return file_response(
         request,
         path,
         media_type,
         tag=tag,
         filename=file_name(experiment, name, SUFFIXES.get(media_type, path.suffix)),
-        cache=cache,
+        cache=cache_control(version, current, public=public),
+        modified=experiment.finished_at or experiment.created_at,
         disposition="attachment" if download else "inline",
     )
 

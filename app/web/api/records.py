@@ -5,6 +5,7 @@ from typing import Any, Literal, Self
 
 from pydantic import BaseModel, Field
 
+from app.experiments.files.versions import made_version
 from app.experiments.model import Experiment, Output, Sample, Snapshot, Status
 from app.methods.effects import COMMON
 from app.methods.model import Method
@@ -41,11 +42,14 @@ class SampleRecord(Record):
     created_at: datetime
     url: str
     image: str = Field(description="Address of an upright image for display.")
+    version: str = Field(
+        description="Version of its pictures: under an address with `v=…` browsers keep them for ever."
+    )
 
     @classmethod
     def of(cls, sample: Sample, base: str) -> "SampleRecord":
         url = f"{base}{API}/samples/{sample.id}"
-        return cls.from_source(sample, url=url, image=f"{url}/image")
+        return cls.from_source(sample, url=url, image=f"{url}/image", version=made_version(sample.digest))
 
 
 class SampleList(BaseModel):

@@ -1,5 +1,6 @@
 """Samples of the REST API, ``/api/v1/samples``: upload photographs and clips, read their records and images."""
 
+from pathlib import Path as FilePath
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Query, Request
@@ -7,13 +8,15 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import FileResponse, Response
 
 from app.errors import InvalidInputError
-from app.experiments.files.renditions import VideoFormat
+from app.experiments.files.renditions import VideoFormat, rendition_bound
+from app.experiments.files.versions import made_tag, made_version, stored_version
+from app.experiments.model import Sample
 from app.numbers import FAR
 from app.web.api.bodies import IDENTIFIER
 from app.web.api.openapi import EXAMPLE_SAMPLE, OWNER, problems
 from app.web.api.records import API, SampleList, SampleRecord
 from app.web.deps import ServiceDep, TokenDep, base_url, in_upload_thread
-from app.web.file_response import FOREVER, SUFFIXES, file_response
+from app.web.file_response import SUFFIXES, Version, cache_control, file_response
 from app.web.limits import VIEWS, take, take_upload
 from app.web.uploads import add_sample, receive_form
 
@@ -113,16 +116,17 @@ async def sample_image(
         Query(ge=1, le=FAR, description="Bounds its longer side in pixels, rounded up to 256, 512, 1024 or 2048."),
     ] = None,
     frame: Annotated[int, Query(ge=0, le=FAR, description="Of a video: which frame, from 0.")] = 0,
+    version: Version = None,
 ) -> Response:
     """Upright and in sRGB; at its own size if none is asked for. Of a video it is one frame."""
     sample = await run_in_threadpool(service.samples.get, sample_id)
     if not sample.bundled:
         take(request, VIEWS)
     path, media_type = await in_upload_thread(request, service.renditions.image, sample, size, frame)
-    tag = f"{sample.digest}-{frame}-{path.stat().st_size}"
-    return file_response(
-        request, path, media_type, tag=tag, filename=f"{sample_id}{SUFFIXES[media_type]}", cache=FOREVER
-    )
+    if size is None and not sample.moving:
+        return _answer(request, sample, path, media_type, sample.digest, version, stored_version(sample.digest))
+    tag = made_tag(sample.digest, sample.height, frame, size and rendition_bound(size))
+    return _answer(request, sample, path, media_type, tag, version, made_version(sample.digest))
 
 
 @router.get(
@@ -144,13 +148,27 @@ async def sample_video(
             "is too long for a lossless file.",
         ),
     ] = "mp4",
+    version: Version = None,
 ) -> Response:
     """Upright, in sRGB and without sound; a sample that is a still picture has none."""
     sample = await run_in_threadpool(service.samples.get, sample_id)
     if not sample.bundled:
         take(request, VIEWS)
     path, media_type = await in_upload_thread(request, service.renditions.video, sample, file_format)
-    tag = f"{sample.digest}-{sample.height}-{sample.rate:g}-{file_format}"
+    tag = made_tag(sample.digest, sample.height, f"{sample.rate:g}", file_format)
+    return _answer(request, sample, path, media_type, tag, version, made_version(sample.digest))
+
+
+def _answer(
+    request: Request, sample: Sample, path: FilePath, media_type: str, tag: str, version: str | None, current: str
+) -> Response:
+    """Answer with a file of a sample; an upload is for those who know its address."""
     return file_response(
-        request, path, media_type, tag=tag, filename=f"{sample_id}{SUFFIXES[media_type]}", cache=FOREVER
+        request,
+        path,
+        media_type,
+        tag=tag,
+        filename=f"{sample.id}{SUFFIXES[media_type]}",
+        cache=cache_control(version, current, public=sample.bundled),
+        modified=sample.created_at,
     )

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from app.errors import NotFoundError
+from app.experiments.files.versions import made_version
 from app.experiments.model import Sample
 from app.images.crop import Rectangle
 from app.methods.fields import FormField, fields
@@ -23,6 +24,7 @@ class Offer:
     """A sample that can be chosen; ``crop`` is where it starts, ``entry`` what the catalogue says of a bundled one."""
 
     id: str
+    digest: str
     title: str
     width: int
     height: int
@@ -34,6 +36,11 @@ class Offer:
     @property
     def moving(self) -> bool:
         return self.frames > 1
+
+    @property
+    def version(self) -> str:
+        """Belongs to the addresses of its pictures."""
+        return made_version(self.digest)
 
 
 @dataclass(frozen=True)
@@ -102,6 +109,7 @@ def _make_offer(entry: Sample, choices: Choices, page: Sample) -> Offer:
     kind = "clip" if entry.moving else "photograph"
     return Offer(
         entry.id,
+        entry.digest,
         entry.title or f"{'This' if entry.id == page.id else 'Your'} {kind}",
         entry.width,
         entry.height,

@@ -3,6 +3,7 @@
 import secrets
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Form, Query, Request
@@ -12,6 +13,7 @@ from starlette.status import HTTP_303_SEE_OTHER
 
 from app.experiments.exhibition import is_exhibit
 from app.experiments.files.outputs import MP4_SUFFIX
+from app.experiments.files.renditions import PREVIEW_NAME
 from app.experiments.model import Experiment, Sample, Status
 from app.experiments.preparation import NewExperiment, NewInput
 from app.experiments.service import Service
@@ -27,6 +29,7 @@ from app.web.form.address import form_url, input_values, sample_url
 from app.web.form.inputs import max_inputs
 from app.web.limits import EXPERIMENTS, take
 from app.web.pages.snippets import snippets
+from app.web.pictures.addresses import output_url
 from app.web.pictures.panes import (
     crop_panes,
     describe_looping,
@@ -37,7 +40,7 @@ from app.web.pictures.panes import (
     steps,
     texture_pane,
 )
-from app.web.pictures.videos import is_video, output_url
+from app.web.pictures.videos import is_video
 from app.web.templating import label, render
 
 SEEDS = 1_000_000  # new seeds are below this: few enough digits to read them aloud
@@ -72,7 +75,7 @@ def experiment_page(
     }
     if experiment.status is Status.SUCCEEDED:
         context |= {
-            "preview": f"{base}/api/v1/experiments/{experiment.id}/outputs/.preview",
+            "preview": f"{base}{output_url(experiment, PREVIEW_NAME)}",
             "panes": [*crop_panes(experiment), texture_pane(experiment)],
             "gallery": gallery(experiment),
             "steps": steps(experiment),
@@ -152,19 +155,19 @@ def parameter_rows(experiment: Experiment) -> Iterator[tuple[str, str]]:
 
 
 def _downloads(experiment: Experiment) -> Iterator[tuple[str, str]]:
-    texture = f"{output_url(experiment, 'texture')}?download=true"
     if is_video(experiment):
-        yield "WebM", texture
-        yield "MP4", f"{output_url(experiment, 'texture-mp4')}?download=true"
-        yield "Animated WebP", f"{output_url(experiment, 'preview')}?download=true"
+        yield "WebM", output_url(experiment, "texture", download=True)
+        yield "MP4", output_url(experiment, "texture-mp4", download=True)
+        yield "Animated WebP", output_url(experiment, "preview", download=True)
         yield "Everything, ZIP", f"/api/v1/experiments/{experiment.id}/outputs.zip"
         return
-    depths = (16, 8) if experiment.depth == 16 else (8, 16)  # the sample's own first
+    texture = partial(output_url, experiment, "texture", download=True)
+    depths: tuple[Literal[8, 16], ...] = (16, 8) if experiment.depth == 16 else (8, 16)  # the sample's own first
     for depth in depths:
-        yield f"PNG, {depth} bit", f"{texture}&format=png&depth={depth}"
-    yield "JPEG", f"{texture}&format=jpeg"
-    yield "WebP", f"{texture}&format=webp"
-    yield f"TIFF, {depths[0]} bit", f"{texture}&format=tiff&depth={depths[0]}"
+        yield f"PNG, {depth} bit", texture(file_format="png", depth=depth)
+    yield "JPEG", texture(file_format="jpeg")
+    yield "WebP", texture(file_format="webp")
+    yield f"TIFF, {depths[0]} bit", texture(file_format="tiff", depth=depths[0])
     yield "Everything, ZIP", f"/api/v1/experiments/{experiment.id}/outputs.zip"
 
 

@@ -5,14 +5,15 @@ from dataclasses import dataclass
 from typing import Any
 
 from app.errors import AppError
-from app.experiments.model import Experiment, Status
+from app.experiments.model import Experiment, Sample, Status
 from app.experiments.service import Service
 from app.images.crop import Rectangle
 from app.methods.explanations.model import Exhibit, Figure
 from app.methods.registry import method
 from app.web.form.address import form_url
+from app.web.pictures.addresses import output_url
 from app.web.pictures.panes import input_parts
-from app.web.pictures.videos import Video, find_video, output_url
+from app.web.pictures.videos import Video, find_video
 from app.web.templating import label
 
 SAMPLE = "Sample"
@@ -35,7 +36,7 @@ class ExhibitPicture:
     width: int
     height: int
     change: str = ""
-    crop: tuple[str, int, int, Rectangle] | None = None
+    crop: tuple[Sample, Rectangle] | None = None
     delta: float | None = None
     state: str = ""
     leads: bool = False
@@ -143,9 +144,10 @@ def _crops(service: Service, exhibit: Exhibit, experiment: Experiment) -> Iterat
         name = CROP if number == 1 else f"{CROP}-{number}"
         if name in exhibit.show:
             sample = service.samples.get(source.sample)
-            crop = (sample.id, sample.width, sample.height, source.crop)
             title, size = _input_title(exhibit, name), (source.crop.width, source.crop.height)
-            yield ExhibitPicture(title, "", f"/samples/{sample.id}", *size, crop=crop, leads=number == 1)
+            yield ExhibitPicture(
+                title, "", f"/samples/{sample.id}", *size, crop=(sample, source.crop), leads=number == 1
+            )
 
 
 def _state(made: Experiment | None, making: bool) -> str:

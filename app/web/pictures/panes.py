@@ -9,7 +9,8 @@ from app.experiments.model import Experiment, Output
 from app.methods.model import Method
 from app.methods.registry import method
 from app.web.form.inputs import ORDINALS
-from app.web.pictures.videos import Video, display_url, find_video, is_video, output_url
+from app.web.pictures.addresses import display_url, output_url
+from app.web.pictures.videos import Video, find_video, is_video
 from app.web.templating import label
 
 CUBES = ("crop-cube", "cube")
@@ -67,7 +68,7 @@ def gallery(experiment: Experiment) -> list[Pane]:
 
 def deep_url(experiment: Experiment, output: Output) -> str:
     """Where a still texture is downloaded at 16 bits."""
-    return f"{output_url(experiment, output.name)}?download=true&format=png&depth=16"
+    return output_url(experiment, output.name, download=True, file_format="png", depth=16)
 
 
 def steps(experiment: Experiment) -> list[Pane]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from app.experiments.files.outputs import MP4_SUFFIX
 from app.experiments.files.renditions import POSTERS
 from app.experiments.model import Experiment, Output
+from app.web.pictures.addresses import output_url
 
 
 @dataclass(frozen=True)
@@ -15,16 +16,6 @@ class Video:
     poster: str
     frames: int
     rate: float
-
-
-def output_url(experiment: Experiment, name: str) -> str:
-    """Where an output is."""
-    return f"/api/v1/experiments/{experiment.id}/outputs/{name}"
-
-
-def display_url(experiment: Experiment, name: str) -> str:
-    """Where an output is as pages show it: a screen shows no more than 8 bits, and they are half as many bytes."""
-    return f"{output_url(experiment, name)}{'?depth=8' if experiment.depth == 16 else ''}"
 
 
 def find_video(experiment: Experiment, output: Output) -> Video | None:

@@ -7,7 +7,15 @@ import { ask, refusalOf } from "../lib/answers.js";
 import { append, find, findAll, seek } from "../lib/dom.js";
 import { start } from "../lib/start.js";
 
-/** @typedef {{ id: string, width: number, height: number, frames: number, rate: number | null }} Sample */
+/**
+ * @typedef {object} Sample
+ * @property {string} id
+ * @property {string} version of its pictures
+ * @property {number} width
+ * @property {number} height
+ * @property {number} frames
+ * @property {number | null} rate
+ */
 
 const SMALL = 256; // pixels of a thumbnail's longer side, as on the home page
 const LARGE = 2048; // and of the picture that is cropped
@@ -19,8 +27,9 @@ const recordOf = (sample) => `/api/v1/samples/${encodeURIComponent(sample)}`;
 /**
  * @param {string} sample
  * @param {number} size
+ * @param {string} version of its pictures
  */
-const imageOf = (sample, size) => `${recordOf(sample)}/image?size=${size}`;
+const imageOf = (sample, size, version) => `${recordOf(sample)}/image?size=${size}&v=${version}`;
 
 let uploads = 0;
 
@@ -70,13 +79,13 @@ class Further {
     const sample = this.select.value;
     if (sample !== this.shown) {
       this.shown = sample;
-      const { width, height, frames, rate, crop = "", ...thanks } = this.select.selectedOptions[0]?.dataset ?? {};
-      const video = Number(frames) > 1 ? `${recordOf(sample)}/video` : "";
+      const { width, height, frames, rate, version = "", crop = "", ...thanks } = this.select.selectedOptions[0]?.dataset ?? {};
+      const video = Number(frames) > 1 ? `${recordOf(sample)}/video?v=${version}` : "";
       this.thank(video ? "Clip" : "Photograph", thanks);
       for (const part of findAll(this.root, ".ground, .numbers")) part.hidden = !sample;
       const before = this.crop.read();
       const size = { width: Number(width), height: Number(height) };
-      const picture = { address: imageOf(sample, LARGE), video, title: this.legend.textContent, ...size };
+      const picture = { address: imageOf(sample, LARGE, version), video, title: this.legend.textContent, ...size };
       if (sample) this.crop.show(picture, crop);
       this.time.show({ frames: Number(frames ?? 1), rate: Number(rate ?? 0) }, kept ? this.time.read() : null);
       if (kept && sample && before) this.crop.write(before);
@@ -136,10 +145,10 @@ class Further {
   }
 
   /** @param {HTMLOptionElement} option */
-  addThumbnail({ value, textContent }) {
+  addThumbnail({ value, textContent, dataset }) {
     const attributes = { loading: "lazy", alt: "", title: textContent, "data-sample": value };
     const image = append("img", attributes, this.wall);
-    image.src = imageOf(value, SMALL);
+    image.src = imageOf(value, SMALL, dataset.version ?? "");
     this.thumbnails.push(image);
   }
 
@@ -196,11 +205,11 @@ class Further {
   }
 
   /** @param {Sample} sample */
-  offer({ id, width, height, frames, rate }) {
+  offer({ id, version, width, height, frames, rate }) {
     const option = new Option(frames > 1 ? "Your clip" : "Your photograph", id);
     const [wide, high] = [Math.min(width, SUGGESTED), Math.min(height, SUGGESTED)];
     const crop = [Math.floor((width - wide) / 2), Math.floor((height - high) / 2), wide, high].join(",");
-    Object.assign(option.dataset, { width, height, frames, rate, crop });
+    Object.assign(option.dataset, { width, height, frames, rate, version, crop });
     this.select.add(option);
     this.addThumbnail(option);
     this.choose(id);

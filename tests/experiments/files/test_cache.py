@@ -123,3 +123,17 @@ def test_what_was_made_of_an_original_is_forgotten_and_nothing_else(tmp_path: Pa
         cache.get(name, lambda: b"x")
     cache.forget("abc")
     assert [path.name for path in tmp_path.iterdir()] == ["abd-256.jpeg"]
+
+
+def test_a_file_that_is_asked_for_again_keeps_its_date_and_is_used_by_then(tmp_path: Path) -> None:
+    """Its date goes out as `Last-Modified`; what was used long ago goes first."""
+    cache = FileCache(tmp_path, 100)
+    path = cache.get("old", lambda: b"0" * 40)
+    other = cache.get("other", lambda: b"1" * 40)
+    for file in (path, other):
+        os.utime(file, (1_000_000, 1_000_000))
+    for read in (cache.get("old", lambda: b""), cache.file("old", lambda target: None)):
+        assert read.stat().st_mtime == 1_000_000
+    cache.get("new", lambda: b"2" * 40)
+    assert path.exists()
+    assert not other.exists()

@@ -3,6 +3,7 @@
 import json
 import zipfile
 from datetime import datetime
+from hashlib import sha256
 from io import BytesIO
 
 import pytest
@@ -14,12 +15,14 @@ def texture_url(experiment):
     return experiment["outputs"][0]["url"]
 
 
-def test_an_output_is_cached_for_ever_under_a_strong_validator(site, experiment, texture):
-    response = site.client.get(texture)
+def test_an_output_is_cached_for_ever_under_its_version(site, experiment, texture):
+    digest = site.client.get(texture).headers["ETag"].strip('"')
+    response = site.client.get(texture, params={"v": digest[:12]})
     assert response.status_code == 200
     assert response.headers["Content-Type"] == "image/png"
     assert int(response.headers["Content-Length"]) == experiment["outputs"][0]["bytes"] == len(response.content)
-    assert response.headers["ETag"].startswith('"')
+    assert response.headers["ETag"] == f'"{digest}"'
+    assert sha256(response.content).hexdigest() == digest
     assert "immutable" in response.headers["Cache-Control"]
     assert "public" in response.headers["Cache-Control"]
     assert Image.open(BytesIO(response.content)).size == (40, 36)

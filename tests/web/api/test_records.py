@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 
+from app.experiments.files.versions import made_version
 from app.experiments.model import Experiment, ExperimentInput, Output, Sample, Snapshot, Status
 from app.images.crop import Frames, Rectangle
 from app.web.api.records import ExperimentRecord, OutputRecord, ProgressRecord, SampleRecord
@@ -37,6 +38,7 @@ def test_a_sample_says_its_media_and_where_it_is() -> None:
         "created_at": "2026-01-02T03:04:05Z",
         "url": "http://x/api/v1/samples/a",
         "image": "http://x/api/v1/samples/a/image",
+        "version": made_version("0"),
     }
 
 

@@ -15,6 +15,7 @@ from app.methods.explanations.model import Exhibit
 from app.web.pictures.exhibits import ExhibitPicture, exhibit_pictures
 from app.web.pictures.videos import find_video
 from app.web.templating import TEMPLATES
+from tests.web.versions import without_versions
 
 TIME = {"first": 1, "count": 5}
 CROP = {"x": 4, "y": 2, "width": 32, "height": 28}
@@ -36,7 +37,7 @@ def films(site: Any, clip: str) -> dict[str, Any]:
 def page_of(site: Any, path: str) -> str:
     answer = site.client.get(path, headers={"Accept": "text/html"})
     assert answer.status_code == 200, answer.text
-    return str(answer.text)
+    return without_versions(str(answer.text))
 
 
 def stages(text: str) -> str:
