@@ -10,6 +10,8 @@ from fastapi import Query, Request
 from starlette.exceptions import HTTPException
 from starlette.responses import FileResponse, Response
 
+from app.errors import NotFoundError
+
 Version = Annotated[
     str | None,
     Query(
@@ -73,14 +75,21 @@ def file_response(
 
     Raises
     ------
+    NotFoundError
+        If somebody removed it meanwhile.
     HTTPException
         416 if the range begins behind the file's end.
     """
     if matches(request, tag):
         return not_modified(tag, cache)
-    _keep_usable_range(request, path.stat().st_size, tag)
+    try:
+        state = path.stat()
+    except FileNotFoundError:
+        raise NotFoundError("This file is not here any more: it was deleted a moment ago.") from None
+    _keep_usable_range(request, state.st_size, tag)
     return FileResponse(
         path,
+        stat_result=state,
         headers={"ETag": f'"{tag}"', "Cache-Control": cache, "Last-Modified": format_datetime(modified, usegmt=True)},
         media_type=media_type,
         filename=filename,

@@ -9,6 +9,9 @@ from threading import Lock
 from uuid import uuid4
 from weakref import WeakValueDictionary
 
+UNFINISHED = "."  # begins the names of files that are being written
+ABANDONED_SECONDS = 3600.0  # without a byte more, after which nobody writes a file any longer
+
 
 class FileCache:
     """Files by name in one directory; the ones unused for longest go when they take too much room.
@@ -47,15 +50,23 @@ class FileCache:
         return path
 
     def _add(self, path: Path, write: Callable[[Path], object]) -> None:
+        try:
+            size = self._write(path, write)
+        except FileNotFoundError:  # the directory was removed meanwhile, which one may do at any time
+            size = self._write(path, write)
+        _touch(path)  # it began long ago where it took long to write
+        self._make_room(size)
+
+    def _write(self, path: Path, write: Callable[[Path], object]) -> int:
         self._directory.mkdir(parents=True, exist_ok=True)
-        temporary = self._directory / f".{uuid4().hex}"
+        temporary = self._directory / f"{UNFINISHED}{uuid4().hex}"
         try:
             write(temporary)
             size = temporary.stat().st_size
             temporary.replace(path)
         finally:
             temporary.unlink(missing_ok=True)
-        self._make_room(size)
+        return size
 
     def forget(self, prefix: str) -> None:
         """Remove the files whose names start so: those that were made of one original."""
@@ -69,17 +80,24 @@ class FileCache:
             if self._written < self._max_bytes // 10:
                 return
             self._written = 0
-            found = []
-            for path in self._directory.iterdir():
-                with suppress(FileNotFoundError):  # someone else removed it
-                    state = path.stat()
-                    found.append((state.st_atime, state.st_size, path))
+            found = self._list()
             total = sum(size for _, size, _ in found)
             for _, size, path in sorted(found):
                 if total <= self._max_bytes * 9 // 10:
                     break
                 path.unlink(missing_ok=True)
                 total -= size
+
+    def _list(self) -> list[tuple[float, int, Path]]:
+        """List the files, with the time of last use and the size; without those that are being written."""
+        found = []
+        with suppress(FileNotFoundError):  # the directory itself was removed
+            for path in self._directory.iterdir():
+                with suppress(FileNotFoundError):  # somebody else removed it
+                    state = path.stat()
+                    if not path.name.startswith(UNFINISHED) or time.time() - state.st_mtime > ABANDONED_SECONDS:
+                        found.append((state.st_atime, state.st_size, path))
+        return found
 
 
 def _touch(path: Path) -> bool:

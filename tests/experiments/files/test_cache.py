@@ -1,6 +1,7 @@
 """Files that can be made again."""
 
 import os
+import shutil
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from threading import Barrier, Event
@@ -137,3 +138,59 @@ def test_a_file_that_is_asked_for_again_keeps_its_date_and_is_used_by_then(tmp_p
     cache.get("new", lambda: b"2" * 40)
     assert path.exists()
     assert not other.exists()
+
+
+def test_making_room_leaves_what_is_being_written(tmp_path: Path) -> None:
+    """However long ago its last byte came: whoever writes it moves it to its name afterwards."""
+    cache, begun, go_on = FileCache(tmp_path, 100), Event(), Event()
+
+    def slow(path: Path) -> None:
+        path.write_bytes(b"0" * 60)
+        os.utime(path, (1_000_000, path.stat().st_mtime))
+        begun.set()
+        go_on.wait(PATIENCE)
+
+    with ThreadPoolExecutor(1) as pool:
+        film = pool.submit(cache.file, "film.mp4", slow)
+        assert begun.wait(PATIENCE)
+        for number in range(4):
+            cache.get(f"{number}", lambda: b"1" * 40)
+        go_on.set()
+        assert film.result(PATIENCE).stat().st_size == 60
+
+
+def test_what_a_killed_process_left_half_written_goes_when_room_is_made(tmp_path: Path) -> None:
+    left = tmp_path / ".left"
+    left.write_bytes(b"0" * 200)
+    os.utime(left, (1_000_000, 1_000_000))
+    FileCache(tmp_path, 100).get("new", lambda: b"1" * 40)
+    assert not left.exists()
+
+
+def test_a_directory_that_is_removed_meanwhile_is_made_again(tmp_path: Path) -> None:
+    """Which one may do at any time, says the documentation."""
+    cache, times = FileCache(tmp_path / "cache", 100), []
+
+    def write(path: Path) -> None:
+        path.write_bytes(b"film")
+        if not times:
+            shutil.rmtree(path.parent)
+        times.append(path)
+
+    assert cache.file("film.mp4", write).read_bytes() == b"film"
+    shutil.rmtree(tmp_path / "cache")
+    cache._make_room(100)
+
+
+def test_many_that_write_remove_and_make_room_at_once_hinder_nobody(tmp_path: Path) -> None:
+    cache = FileCache(tmp_path, 2000)
+
+    def work(thread: int) -> None:
+        for number in range(200):
+            cache.get(f"{thread}-{number % 20}", lambda: b"0" * 150)
+            if number % 5 == 0:
+                cache.forget(f"{(thread + 1) % 4}-")
+
+    with ThreadPoolExecutor(4) as pool:
+        for done in [pool.submit(work, thread) for thread in range(4)]:
+            done.result(PATIENCE)
