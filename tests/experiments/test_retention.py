@@ -3,15 +3,18 @@
 from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
+from threading import Event
 from typing import Any
 
 import pytest
 
 from app.errors import DeletedError
+from app.experiments import housekeeping
 from app.experiments.files.cache import FileCache
 from app.experiments.housekeeping import Housekeeping
 from app.experiments.model import Experiment, Sample
 from app.experiments.retention import Retention
+from app.experiments.steady_clock import SteadyClock
 from app.gallery.exhibits import exhibits
 from app.settings import Settings
 from app.store.blobs import FileBlobs
@@ -104,3 +107,28 @@ def test_one_that_has_not_finished_has_no_end(store: SqlStore) -> None:
 def test_the_settings_are_days() -> None:
     assert Retention.by(Settings(keep_unlisted_days=1.5, keep_days=30)) == Retention(1.5 * DAY, 30 * DAY)
     assert Retention.by(Settings()) == Retention(None, None)
+
+
+@pytest.mark.parametrize("steady", [True, False])
+def test_nothing_goes_by_itself_after_the_clock_was_set(
+    tmp_path: Path,
+    store: SqlStore,
+    blobs: FileBlobs,
+    finished: Callable[..., Experiment],
+    monkeypatch: pytest.MonkeyPatch,
+    caplog: pytest.LogCaptureFixture,
+    steady: bool,
+) -> None:
+    """The hourly round asks whether the clock ran steadily; whoever prunes by hand is believed."""
+    made = {"old": finished(31 * DAY)}
+    monkeypatch.setattr(housekeeping, "PRUNE_SECONDS", 0.0)
+    closing = Event()
+
+    def look(_clock: SteadyClock) -> bool:
+        closing.set()
+        return steady
+
+    monkeypatch.setattr(SteadyClock, "steady", look)
+    keeper(tmp_path, store, blobs, Retention(every=30 * DAY)).keep(closing)
+    assert left(store, made) == (set() if steady else {"old"})
+    assert ("the clock was set" in caplog.text) is not steady
