@@ -6,10 +6,20 @@ The library's own counts by the wall clock, which may jump by days, and keeps an
 import threading
 import time
 from collections import deque
+from dataclasses import dataclass, field
 
 from limits.storage.base import MovingWindowSupport, Storage
 
 SWEEP_SECONDS = 60.0  # how often what is past is dropped, of clients that did not come back
+
+
+@dataclass
+class _Taken:
+    """What one key took, oldest first, how much that is together, and for how long it counts."""
+
+    entries: deque[tuple[float, int]] = field(default_factory=deque)
+    total: int = 0
+    kept: float = 0.0
 
 
 class MonotonicWindows(Storage, MovingWindowSupport):
@@ -19,8 +29,7 @@ class MonotonicWindows(Storage, MovingWindowSupport):
 
     def __init__(self) -> None:
         super().__init__()
-        self._taken: dict[str, deque[tuple[float, int]]] = {}
-        self._kept: dict[str, float] = {}
+        self._taken: dict[str, _Taken] = {}
         self._lock = threading.RLock()
         self._swept = self.now()
 
@@ -39,8 +48,10 @@ class MonotonicWindows(Storage, MovingWindowSupport):
         with self._lock:
             if self.get_moving_window(key, limit, expiry)[1] + amount > limit:
                 return False
-            self._taken.setdefault(key, deque()).append((self.now(), amount))
-            self._kept[key] = expiry
+            taken = self._taken.setdefault(key, _Taken())
+            taken.entries.append((self.now(), amount))
+            taken.total += amount
+            taken.kept = expiry
             if self.now() - self._swept > SWEEP_SECONDS:
                 self._sweep()
         return True
@@ -48,28 +59,27 @@ class MonotonicWindows(Storage, MovingWindowSupport):
     def get_moving_window(self, key: str, limit: int, expiry: int) -> tuple[float, int]:
         """Give the moment of the oldest entry within the window, and what was taken within it."""
         with self._lock:
-            now, taken = self.now(), self._taken.get(key, deque())
-            while taken and taken[0][0] <= now - expiry:
-                taken.popleft()
-            return taken[0][0] if taken else now, sum(amount for _, amount in taken)
+            now, taken = self.now(), self._taken.get(key, _Taken())
+            while taken.entries and taken.entries[0][0] <= now - expiry:
+                taken.total -= taken.entries.popleft()[1]
+            return taken.entries[0][0] if taken.entries else now, taken.total
 
     def _sweep(self) -> None:
         self._swept = now = self.now()
-        for key in [key for key, taken in self._taken.items() if not taken or taken[-1][0] <= now - self._kept[key]]:
-            self.clear(key)
+        for key, taken in list(self._taken.items()):
+            if not taken.entries or taken.entries[-1][0] <= now - taken.kept:
+                self.clear(key)
 
     def clear(self, key: str) -> None:
         """Forget what was taken."""
         with self._lock:
             self._taken.pop(key, None)
-            self._kept.pop(key, None)
 
     def reset(self) -> int:
         """Forget everything; how many keys there were."""
         with self._lock:
             count = len(self._taken)
             self._taken.clear()
-            self._kept.clear()
         return count
 
     def check(self) -> bool:
