@@ -4,7 +4,7 @@ import asyncio
 import logging
 import threading
 import time
-from collections.abc import AsyncGenerator, Callable, Collection, Iterator, Mapping
+from collections.abc import AsyncGenerator, Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
@@ -19,6 +19,7 @@ log = logging.getLogger(__name__)
 
 POLL_SECONDS = 0.5
 REPEAT_SECONDS = 4.0  # a state that stays is told again so often: after 5 s of silence pages ask for the record
+GROUP, GROUP_SECONDS = 25, 0.01  # so many are told at once, and the next so many a moment later
 SILENCE_SECONDS = 15.0  # without a state, as while the database is away
 
 Source = Callable[[Collection[str]], Mapping[str, Snapshot]]
@@ -58,12 +59,14 @@ class _Watcher:
     def __init__(self) -> None:
         self.loop = asyncio.get_running_loop()
         self._state = _State()
+        self._number = 0
         self._changed = asyncio.Event()
 
-    def deliver(self, state: _State) -> None:
-        """Hand a state over; called by the event loop."""
-        self._state = state
-        self._changed.set()
+    def deliver(self, number: int, state: _State) -> None:
+        """Hand a state over, unless a later one was; called by the event loop."""
+        if number > self._number:
+            self._number, self._state = number, state
+            self._changed.set()
 
     async def next(self, seconds: float | None) -> _State | None:
         """Await the next state; None after this many seconds."""
@@ -85,6 +88,7 @@ class _Watched:
     watchers: set[_Watcher] = field(default_factory=set)
     state: _State | None = None
     told: float = 0.0
+    number: int = 0
 
 
 class Watching:
@@ -159,7 +163,7 @@ class Watching:
             watched = self._watched.setdefault(job, _Watched())
             watched.watchers.add(watcher)
             if watched.state is not None:
-                watcher.deliver(watched.state)
+                watcher.deliver(watched.number, watched.state)
             else:
                 self._due.add(job)
                 self._changed.notify_all()
@@ -227,7 +231,7 @@ class Watching:
                 return
             if watched.state is not None and not _is_news(state, watched.state, now - watched.told, in_turn):
                 return
-            watched.state, watched.told = state, now
+            watched.state, watched.told, watched.number = state, now, watched.number + 1
             if state.final:
                 del self._watched[job]  # who comes later looks anew: it may be made again
             watchers: dict[asyncio.AbstractEventLoop, list[_Watcher]] = {}
@@ -235,7 +239,7 @@ class Watching:
                 watchers.setdefault(watcher.loop, []).append(watcher)
         for loop, group in watchers.items():
             with suppress(RuntimeError):  # it was closed
-                loop.call_soon_threadsafe(_deliver, group, state)
+                loop.call_soon_threadsafe(_deliver, loop, group, watched.number, state)
 
 
 def _is_news(state: _State, known: _State, age: float, in_turn: bool) -> bool:
@@ -245,9 +249,12 @@ def _is_news(state: _State, known: _State, age: float, in_turn: bool) -> bool:
     return in_turn and (known.differs(state) or age >= REPEAT_SECONDS)
 
 
-def _deliver(watchers: Collection[_Watcher], state: _State) -> None:
-    for watcher in watchers:
-        watcher.deliver(state)
+def _deliver(loop: asyncio.AbstractEventLoop, watchers: Sequence[_Watcher], number: int, state: _State) -> None:
+    """Hand a state to some, then to the others: between the two the event loop has time for requests."""
+    for watcher in watchers[:GROUP]:
+        watcher.deliver(number, state)
+    if len(watchers) > GROUP:
+        loop.call_later(GROUP_SECONDS, _deliver, loop, watchers[GROUP:], number, state)
 
 
 def _snapshot_of(experiment: Experiment) -> Snapshot:
