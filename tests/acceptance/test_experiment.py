@@ -1,6 +1,7 @@
 """An experiment's page: pictures beside and upon each other, the other model, progress, cancelling, snippets."""
 
 import os
+import re
 import subprocess
 import sys
 from collections.abc import Callable
@@ -66,7 +67,7 @@ def test_zoom_stays_between_a_quarter_and_sixteen(visitors: Any, experiment: dic
 def test_flip_shows_one_picture_in_the_place_of_the_other(visitors: Any, experiment: dict[str, Any]) -> None:
     page = visitors.visit(f"/experiments/{experiment['id']}")
     page.get_by_role("link", name="Flip").click()
-    assert page.url.endswith("?view=flip")
+    expect(page).to_have_url(re.compile(r"\?view=flip$"))
     images = page.locator(".over .stage img")
     expect(images.nth(0)).to_be_hidden()
     expect(images.nth(1)).to_be_visible()

@@ -84,7 +84,7 @@ def test_its_page_places_every_photograph_and_is_accessible(
     page.wait_for_load_state("networkidle")
     samples = site.client.get("/api/v1/samples").json()["samples"]
     textures = [entry for entry in samples if entry["id"] != "scene_china" and entry["frames"] == 1]
-    assert page.locator(".photographs li").count() == len(textures)
+    expect(page.locator(".photographs li")).to_have_count(len(textures))
     assert page.evaluate("document.documentElement.scrollWidth") <= width
     shown = [float(text) for text in page.locator(".photographs .meter-number").all_inner_texts()]
     assert shown == sorted(shown)

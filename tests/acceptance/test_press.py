@@ -144,7 +144,7 @@ def test_who_comes_back_may_press_again_for_another_experiment(visitors: Any, si
     expect(page.locator("#sending")).to_be_empty()
     page.get_by_role("button", name="Synthesise").click()
     arrive(page)
-    assert page.url != first
+    expect(page).not_to_have_url(first)
     assert made_of(site, 9113) == 2
 
 

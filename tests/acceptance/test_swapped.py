@@ -44,7 +44,7 @@ def assert_pictures(page: Page) -> None:
         if image.is_visible():
             image.scroll_into_view_if_needed()
             expect(image).to_have_js_property("complete", value=True)
-            assert image.evaluate("image => image.naturalWidth") > 0
+            expect(image).not_to_have_js_property("naturalWidth", 0)
 
 
 def assert_views(page: Page) -> None:
@@ -121,12 +121,12 @@ def assert_downloads(page: Page) -> None:
 def assert_texts(page: Page) -> None:
     """What can be copied is copied by its button."""
     buttons = page.get_by_role("button", name="Copy", exact=True)
-    assert buttons.count() == 3
+    expect(buttons).to_have_count(3)
     buttons.first.click()
     expect(page.get_by_role("button", name="Copied")).to_be_visible()
     page.get_by_role("heading", level=1).click()
     page.evaluate("document.activeElement.blur()")
-    assert buttons.count() == 3
+    expect(buttons).to_have_count(3)
 
 
 @pytest.fixture
