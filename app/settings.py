@@ -4,7 +4,7 @@ import os
 import re
 from pathlib import Path
 from typing import Literal
-from urllib.parse import urlsplit
+from urllib.parse import quote, urlsplit
 
 from pydantic import Field, SecretStr, field_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
@@ -30,7 +30,7 @@ class Settings(BaseSettings):
 
     # State
     data_dir: Path = Field(Path("data"), description="Directory of the database and of the content-addressed files.")
-    database_url: str | None = Field(
+    database_url: SecretStr | None = Field(
         None, description="SQLAlchemy URL, e.g. postgresql+psycopg://…; default: SQLite under the data directory."
     )
     samples_dir: Path = Field(ROOT / "samples", description="Directory of the bundled photographs and their catalogue.")
@@ -150,7 +150,9 @@ class Settings(BaseSettings):
     @property
     def sql_url(self) -> str:
         """The database's SQLAlchemy URL."""
-        return self.database_url or f"sqlite:///{(self.data_dir / 'microtexture.sqlite3').resolve()}"
+        if self.database_url is not None:
+            return self.database_url.get_secret_value()
+        return f"sqlite:///{quote(str((self.data_dir / 'microtexture.sqlite3').resolve()))}"
 
 
 def _split(text: str) -> list[str]:
