@@ -19,6 +19,8 @@ from app.web.request_id import HEADER, request_id
 
 MEDIA_TYPE = "application/problem+json"
 RETRY_SECONDS = 10
+FAULTS = 20  # that an answer lists
+LONGEST_PLACE = 40  # characters of a field's name that are said back
 
 STATUS: dict[type[errors.AppError], int] = {
     errors.InvalidInputError: 422,
@@ -128,15 +130,14 @@ async def _validation_error(request: Request, error: Exception) -> Response:
         return respond(request, 400, f"The body is not valid JSON: {found[0]['ctx']['error']} at character {position}.")
     if any(fault["loc"][0] == "path" for fault in found):
         return respond(request, 404, _DETAILS[404])
-    faults = [
-        {"field": ".".join(str(part) for part in fault["loc"][1:]), "message": _message(fault)} for fault in found
-    ]
-    more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
+    faults = [{"field": _place(fault), "message": _message(fault)} for fault in found[:FAULTS]]
+    more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
     return respond(request, 422, f"{faults[0]['message']}{more}", faults=faults)
 
 
 def _place(fault: Mapping[str, Any]) -> str:
-    return ".".join(str(part) for part in fault["loc"][1:])
+    place = ".".join(str(part) for part in fault["loc"][1:])
+    return place if len(place) <= LONGEST_PLACE else f"{place[:LONGEST_PLACE]}…"
 
 
 def _message(fault: Mapping[str, Any]) -> str:

@@ -71,7 +71,7 @@ def test_another_method_is_told_those_allowed(site, method, path, allow):
     [
         (b"{", "application/json", 400),
         (b'{"method": "\xff"}', "application/json", 400),
-        (b'{"a": ' * 50_000, "application/json", 400),
+        (b'{"a": ' * 10_000, "application/json", 400),
         (b"9" * 5000, "application/json", 400),
         (b"[]", "application/json", 422),
         (b"null", "application/json", 422),

@@ -1,14 +1,16 @@
 """JSON request bodies of the API: strict types, no unknown fields."""
 
-from typing import Annotated
+from typing import Annotated, Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StringConstraints
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StringConstraints, model_validator
+from pydantic_core import PydanticCustomError
 
 from app.experiments.preparation import NewInput
 from app.images.crop import Frames, Rectangle
 from app.numbers import FAR
 
 IDENTIFIER = r"^[A-Za-z0-9_-]{1,64}$"
+UNKNOWN_KEYS = 8  # each of which is named
 Identifier = Annotated[str, StringConstraints(pattern=IDENTIFIER)]
 
 
@@ -24,6 +26,20 @@ class Body(BaseModel):
     """A JSON body: no unknown fields, no guessing at types."""
 
     model_config = ConfigDict(strict=True, extra="forbid")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _refuse_many_unknown(cls, value: Any) -> Any:
+        """Count what is not known before anything is validated: a fault is not made for each of thousands of fields."""
+        if isinstance(value, dict):
+            unknown = [key for key in value if key not in cls.model_fields]
+            if len(unknown) > UNKNOWN_KEYS:
+                raise PydanticCustomError(
+                    "unknown_fields",
+                    "{count} of its fields are not known; it has {known} only",
+                    {"count": len(unknown), "known": ", ".join(cls.model_fields)},
+                )
+        return value
 
 
 class Crop(Body):

@@ -24,6 +24,7 @@ from app.web.deps import ServiceDep, TokenDep, base_url, remember_owner
 from app.web.limits import EXPERIMENTS, VIEWS, take
 from app.web.shutdown import unless_stopping
 
+MOST_PARAMETERS = 64  # no method has half as many
 LONGEST = 60  # seconds that `Prefer: wait=` waits
 _WAIT = re.compile(r'(?:^|,)\s*wait\s*=\s*"?(\d{1,9})"?\s*(?=[,;]|$)', re.IGNORECASE)
 
@@ -63,7 +64,9 @@ class ExperimentBody(Body):
     inputs: list[InputBody] = Field(
         min_length=1, max_length=8, description="As many as the method needs, and at most `more_inputs` more."
     )
-    parameters: dict[str, Any] = Field(default_factory=dict, description="What is left out has its default.")
+    parameters: dict[str, Any] = Field(
+        default_factory=dict, max_length=MOST_PARAMETERS, description="What is left out has its default."
+    )
     listed: bool = Field(True, description="Whether the archive shows it; otherwise only its link leads to it.")
 
     def to_request(self) -> NewExperiment:

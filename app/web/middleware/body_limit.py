@@ -8,12 +8,14 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from app.settings import MEBIBYTE
 from app.web.problems import respond
 
+JSON_BYTES = 64 << 10  # the largest that means something has a hundred numbers
 FORM_BYTES = MEBIBYTE  # room for the fields of a form beside its file
+JSON_ROUTES = ("/api/v1/check", "/api/v1/experiments")
 _DISCARDED = 3  # times the limit
 
 
 class BodyLimit:
-    """Answers 413 to a body that is larger than its kind may be: ``upload`` bytes in a form, or a mebibyte of JSON.
+    """Answers 413 to a body that is larger than its kind may be: ``upload`` bytes in a form, or 64 kB of anything else.
 
     What a client is still sending when its form is refused, here or behind, is read and dropped, up to a few times the
     limit: most clients look for an answer only when they have sent everything, and a connection closed in their face
@@ -30,7 +32,8 @@ class BodyLimit:
             return
         headers = Headers(scope=scope)
         is_form = headers.get("content-type", "").lower().startswith("multipart/form-data")
-        limit = self.upload + FORM_BYTES if is_form else MEBIBYTE
+        is_form = is_form and not scope["path"].startswith(JSON_ROUTES)  # they read what comes before they look at it
+        limit = self.upload + FORM_BYTES if is_form else JSON_BYTES
         what, bound = ("upload", self.upload) if is_form else ("body", limit)
         detail = f"The {what} is larger than {format_bytes(bound)}: send a smaller one."
         declared = headers.get("content-length", "")

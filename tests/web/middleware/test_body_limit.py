@@ -4,7 +4,7 @@ import socket
 
 import pytest
 
-from app.web.middleware.body_limit import FORM_BYTES
+from app.web.middleware.body_limit import FORM_BYTES, JSON_BYTES
 
 PROBLEM = "application/problem+json"
 HEAD = b'--b\r\nContent-Disposition: form-data; name="file"; filename="a.png"\r\n\r\n'
@@ -35,6 +35,15 @@ def test_an_oversized_json_body_is_too_large(site, declared):
     content = b" " * (2 << 20) if declared else iter([b" " * (1 << 20)] * 2)
     response = site.client.post("/api/v1/experiments", content=content, headers={"Content-Type": "application/json"})
     assert (response.status_code, response.headers["Content-Type"]) == (413, PROBLEM)
+
+
+@pytest.mark.parametrize("kind", ["application/json", "multipart/form-data; boundary=b", "text/plain"])
+@pytest.mark.parametrize("path", ["experiments", "check"])
+def test_json_routes_take_64_kilobytes_of_any_kind_of_body(site, path, kind):
+    for size, expected in ((JSON_BYTES, {400, 415, 422}), (JSON_BYTES + 1, {413})):
+        response = site.client.post(f"/api/v1/{path}", content=b" " * size, headers={"Content-Type": kind})
+        assert response.status_code in expected, (size, response.text)
+    assert "64 kB" in response.json()["detail"]
 
 
 def test_an_oversized_form_of_a_page_is_answered_with_a_page(site):
