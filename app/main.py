@@ -11,6 +11,7 @@ from fastapi import FastAPI
 from starlette.middleware import Middleware
 from starlette.staticfiles import StaticFiles
 
+from app.errors import InvalidInputError
 from app.executor.dask import DaskExecutor
 from app.experiments.service import Service
 from app.samples import require_files
@@ -43,8 +44,31 @@ UPLOADS_AT_ONCE = 4
 SAFE_TOKEN = 16  # characters
 
 
+def check_scheduler(settings: Settings) -> None:
+    """Refuse what workers on other machines cannot share.
+
+    Raises
+    ------
+    InvalidInputError
+        If a scheduler is set together with SQLite or with a relative directory.
+    """
+    if settings.scheduler is None:
+        return
+    if settings.sql_url.startswith("sqlite"):
+        raise InvalidInputError(
+            "Set MICROTEXTURE_DATABASE_URL to a PostgreSQL database: with MICROTEXTURE_SCHEDULER workers run on other "
+            "machines, and SQLite is a file of this one."
+        )
+    if not settings.data_dir.is_absolute():
+        raise InvalidInputError(
+            "Set MICROTEXTURE_DATA_DIR to an absolute path, which every worker sees: with MICROTEXTURE_SCHEDULER a "
+            f"relative one ({settings.data_dir}) is another directory in every process."
+        )
+
+
 def build_service(settings: Settings) -> Service:
     """Make the service with the backends that the settings name; its `start` begins work."""
+    check_scheduler(settings)
     settings.data_dir.mkdir(parents=True, exist_ok=True)
     store = SqlStore(settings.sql_url)
     queue, blobs = SqlQueue(store.database), FileBlobs(settings.data_dir / "files", settings.min_free_bytes)

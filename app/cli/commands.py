@@ -42,21 +42,25 @@ def serve(
     ] = 500,
 ) -> None:
     """Serve the web pages and the REST API."""
+    from functools import partial
+
     import uvicorn
 
     from app.cli.settings import read_settings
+    from app.main import check_scheduler, create_app
     from app.samples import require_files
     from app.web.logs import configuration
 
     with plain_errors():
-        settings = read_settings()
+        settings = read_settings(for_children=True)
+        check_scheduler(settings)
         require_files(settings.samples_dir)
         settings.data_dir.mkdir(parents=True, exist_ok=True)
         if not os.access(settings.data_dir, os.W_OK):
             raise PermissionError(errno.EACCES, "The data directory cannot be written", str(settings.data_dir))
 
     uvicorn.run(
-        "app.main:create_app",
+        partial(create_app, settings),
         factory=True,
         host=host,
         port=port,
@@ -144,7 +148,8 @@ def catalogue(
         typer.echo(f"{number}/{of} {exhibit.method} of {samples}{f': {error}' if error else ''}", err=True)
 
     with plain_errors():
-        settings = read_settings().model_copy(update={"catalogue": False})  # it is made here, not in the background
+        # It is made here, not in the background.
+        settings = read_settings(for_children=True).model_copy(update={"catalogue": False})
         service = build_service(settings)
         try:
             service.start()

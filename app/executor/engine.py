@@ -9,7 +9,7 @@ from typing import Any
 from uuid import uuid4
 
 import dask
-from distributed import Client, Future, LocalCluster
+from distributed import Client, Future, LocalCluster, Security
 from distributed.core import Status
 from distributed.utils import get_mp_context
 
@@ -154,7 +154,8 @@ def _local_cluster(settings: Settings, run: Run) -> LocalCluster:
         processes=True,
         memory_limit=settings.worker_memory,
         host=LOOPBACK,
-        protocol="tcp://",
+        protocol="tls://",  # with a certificate of its own: others on this machine cannot run code in the workers
+        security=Security.temporary(),
         dashboard_address=None,
         scheduler_kwargs={"dashboard": False, "dashboard_address": f"{LOOPBACK}:0"},
         silence_logs=logging.ERROR,

@@ -5,7 +5,7 @@ import fcntl
 import hashlib
 import os
 from collections.abc import Callable, Collection, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from datetime import datetime
 from pathlib import Path
 from uuid import uuid4
@@ -56,12 +56,11 @@ class FileBlobs:
             digest = hashlib.file_digest(file, "sha256").hexdigest()
             os.fsync(file.fileno())
         target = self._path(digest)
-        if target.exists():
-            path.unlink()
-        else:
+        if not target.parent.exists():
             target.parent.mkdir(exist_ok=True)
-            path.replace(target)
-            _sync_directory(target.parent)
+            _sync_directory(self.directory)
+        path.replace(target)  # also one that is there: it may be damaged
+        _sync_directory(target.parent)
         return digest
 
     @contextmanager
@@ -117,10 +116,13 @@ class FileBlobs:
 
     def remove_temporary(self, older_than: datetime) -> int:
         """Remove what killed processes left half-written before this moment; how many."""
-        stale = [path for path in self.temporary_directory.iterdir() if path.stat().st_mtime < older_than.timestamp()]
-        for path in stale:
-            path.unlink(missing_ok=True)
-        return len(stale)
+        removed = 0
+        for path in self.temporary_directory.iterdir():
+            with suppress(FileNotFoundError):  # its writer has just moved it in
+                if path.stat().st_mtime < older_than.timestamp():
+                    path.unlink()
+                    removed += 1
+        return removed
 
     def _path(self, digest: str) -> Path:
         return self.directory / digest[:2] / digest

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from app.errors import NotFoundError
+from app.errors import DISK_SPACE, STORAGE, NotFoundError, UnavailableError
 from app.store.blobs import FileBlobs
 
 
@@ -79,16 +79,24 @@ def test_a_temporary_file_is_removed_if_it_is_older(blobs: FileBlobs, age: int, 
 def test_temporary_files_that_somebody_else_removes_meanwhile_keep_no_other_from_going(
     blobs: FileBlobs, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    paths = [blobs.temporary(b"half") for _ in range(3)]
-    unlink = Path.unlink
+    """Before it is looked at and before it is removed."""
+    paths = [blobs.temporary(b"half") for _ in range(6)]
+    unlink, stat = Path.unlink, Path.stat
 
-    def raced(path: Path, missing_ok: bool = False) -> None:
-        unlink(path)
+    def raced_unlink(path: Path, missing_ok: bool = False) -> None:
+        if path == paths[0]:
+            unlink(path)
         unlink(path, missing_ok=missing_ok)
 
-    monkeypatch.setattr(Path, "unlink", raced)
-    assert blobs.remove_temporary(datetime.now(UTC) + timedelta(minutes=1)) == 3
-    assert not any(path.exists() for path in paths)
+    def raced_stat(path: Path, **options: bool) -> os.stat_result:
+        if path == paths[1]:
+            unlink(path, missing_ok=True)
+        return stat(path, **options)
+
+    monkeypatch.setattr(Path, "unlink", raced_unlink)
+    monkeypatch.setattr(Path, "stat", raced_stat)
+    assert blobs.remove_temporary(datetime.now(UTC) + timedelta(minutes=1)) == 4
+    assert list(blobs.temporary_directory.iterdir()) == []
 
 
 def test_what_is_put_is_on_the_disk_before_it_has_its_name(blobs: FileBlobs, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -106,8 +114,41 @@ def test_what_is_put_is_on_the_disk_before_it_has_its_name(blobs: FileBlobs, mon
 
     monkeypatch.setattr(os, "fsync", note_sync)
     monkeypatch.setattr(Path, "replace", note_name)
-    blobs.put(b"texture")
-    assert events == ["sync", "sync", "name", "sync"]  # as it is written, as it is moved in, and its directory
+    digest = blobs.put(b"texture")
+    # As it is written, as it is moved in, the directory's own name if it is new, and what is in it.
+    assert events == ["sync", "sync", "sync", "name", "sync"]
+    events.clear()
+    assert blobs.put(b"texture") == digest
+    assert events == ["sync", "sync", "name", "sync"]
+
+
+def test_what_is_put_again_mends_a_damaged_file(blobs: FileBlobs) -> None:
+    digest = blobs.put(b"texture")
+    blobs.path(digest).write_bytes(b"")
+    assert blobs.put(b"texture") == digest
+    assert blobs.path(digest).read_bytes() == b"texture"
+
+
+@pytest.mark.parametrize("missing", [0, 1 << 60])
+def test_a_probe_says_whether_files_can_be_written_with_room_to_spare(tmp_path: Path, missing: int) -> None:
+    blobs = FileBlobs(tmp_path / "files", min_free_bytes=missing)
+    if not missing:
+        blobs.probe()
+    else:
+        with pytest.raises(UnavailableError, match="too little room") as raised:
+            blobs.probe()
+        assert raised.value.part == DISK_SPACE
+    assert list(blobs.temporary_directory.iterdir()) == []
+
+
+def test_a_directory_that_is_gone_is_unavailable_and_comes_back(tmp_path: Path) -> None:
+    blobs = FileBlobs(tmp_path / "files")
+    blobs.directory.rename(tmp_path / "away")
+    with pytest.raises(UnavailableError, match="cannot be written") as raised:
+        blobs.probe()
+    assert raised.value.part == STORAGE
+    (tmp_path / "away").rename(blobs.directory)
+    blobs.probe()
 
 
 def test_a_lock_is_let_go_even_if_what_holds_it_fails(blobs: FileBlobs) -> None:

@@ -12,6 +12,7 @@ from pathlib import Path
 from threading import BoundedSemaphore, Lock
 from typing import Any
 
+from app.child_environment import allowed
 from app.errors import AppError, BrokenFileError, BusyError, TooLargeError, UnsupportedFormatError
 from app.images.decode import Limits
 from app.images.intake import server as decoding_server
@@ -78,7 +79,7 @@ class DecodingServer:
                     stdin=theirs.fileno(),
                     stdout=subprocess.DEVNULL,
                     cwd=PACKAGES,
-                    env=os.environ | ENVIRONMENT,
+                    env=allowed(os.environ) | ENVIRONMENT,
                     start_new_session=True,
                 )
         return self._control
