@@ -28,6 +28,6 @@ def clip(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="module")
 def uploaded(site: Any, clip: Path) -> str:
     """The address of that clip's page."""
-    answer = site.client.post("/api/v1/samples", files={"file": clip.open("rb")})
+    answer = site.client.post("/api/v1/samples", files={"file": (clip.name, clip.read_bytes())})
     assert answer.status_code == 201, answer.text
     return f"/samples/{answer.json()['id']}"
