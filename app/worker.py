@@ -1,5 +1,8 @@
 """Wiring of a worker process: what `app.main` is for the service."""
 
+import logging
+import logging.config
+import os
 from functools import lru_cache
 from pathlib import Path
 
@@ -9,14 +12,27 @@ from app.settings import Settings
 from app.store.blobs import FileBlobs
 from app.store.queue import SqlQueue
 from app.store.sql import SqlStore
+from app.web.logs import Form, configuration
+
+log = logging.getLogger(__name__)
 
 
 def run_job(settings: Settings, lease: Lease) -> None:
     """Run one job with the store and the files that the settings name; they stay open for the next one."""
+    _log_as_the_service(settings.log_format, settings.log_level)
     store = _store(settings.sql_url)
     blobs = _blobs(settings.data_dir / "files")
     queue = SqlQueue(store.database)
-    run.run_job(store, queue, blobs, lease, threads=settings.threads, time_limit=settings.time_limit)
+    log.info("job %s, lease %d: begun by process %d", lease.job, lease.fence, os.getpid())
+    try:
+        run.run_job(store, queue, blobs, lease, threads=settings.threads, time_limit=settings.time_limit)
+    finally:
+        log.info("job %s, lease %d: left by process %d", lease.job, lease.fence, os.getpid())
+
+
+@lru_cache(maxsize=1)
+def _log_as_the_service(form: Form, level: str) -> None:
+    logging.config.dictConfig(configuration(form, level))
 
 
 @lru_cache(maxsize=4)

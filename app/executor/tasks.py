@@ -1,6 +1,5 @@
 """Tasks: the functions that run on the workers and nannies of a Dask cluster."""
 
-import logging
 import os
 from typing import Any
 
@@ -9,16 +8,12 @@ from app.experiments.model import Lease
 from app.experiments.ports import Run
 from app.settings import Settings
 
-log = logging.getLogger(__name__)
-
 
 def work(run: Run, settings: Settings, lease: Lease) -> None:
     """Run one job in the thread of a worker. What it comes to is in the database; what kept it from that is raised."""
-    log.info("job %s, lease %d: begun by process %d", lease.job, lease.fence, os.getpid())
     try:
         run(settings, lease)
     finally:
-        log.info("job %s, lease %d: left by process %d", lease.job, lease.fence, os.getpid())
         give_back()
 
 

@@ -98,8 +98,6 @@ def _audit_outputs(client: httpx.Client, ledger: Ledger, records: dict[str, dict
             found.counts["outputs"] += 1
             if answer.status_code != 200 or digest not in answer.headers.get("ETag", ""):
                 found.faults["bad digests"].append(output["url"])
-                    f"{output['url']}: {answer.status_code} {answer.headers.get('ETag')}"
-                )
             if output["name"] == "texture":
                 same[ledger.experiments[experiment]].add(digest)
     found.counts["asked again"] = len(records) - len(same)

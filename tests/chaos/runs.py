@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from tests.chaos.processes import Line
 
-BEGINS = re.compile(r"job (\S+) fence (\d+) begins in process (\d+)")
-LEAVES = re.compile(r"job (\S+) fence (\d+) leaves process (\d+)")
+BEGINS = re.compile(r"job (\S+), lease (\d+): begun by process (\d+)")
+LEAVES = re.compile(r"job (\S+), lease (\d+): left by process (\d+)")
 STOP_SECONDS = 5.0  # a run whose lease is gone ends within
 
 

@@ -14,6 +14,7 @@ from tests.chaos.audit import Findings, audit, audit_files
 from tests.chaos.faults import Fault
 from tests.chaos.host import FAKETIME, Kind, running
 from tests.chaos.ledger import Ledger
+from tests.chaos.processes import until
 from tests.chaos.traffic import readiness, traffic
 
 pytestmark = pytest.mark.chaos
@@ -23,7 +24,6 @@ POSTGRESQL, TWO_POSTGRESQL = Kind("postgresql"), Kind("postgresql", webs=2)
 EXTERNAL = Kind("postgresql", engine="external", webs=2)
 EMBEDDED_KILLS = [faults.one_server, faults.one_worker, faults.all_workers, faults.fork_server, faults.decoder]
 EXTERNAL_KILLS = [faults.one_server, faults.one_worker, faults.all_workers, faults.nanny, faults.scheduler]
-
 BACKLOG = 8  # experiments that were accepted before the first fault
 
 SCENARIOS: dict[str, tuple[Kind, list[Fault]]] = {
@@ -60,6 +60,7 @@ def suffer(kind: Kind, what: list[Fault], directory: Path, record_figures) -> Fi
     with running(kind, directory) as host:
         with readiness(host.addresses, ledger):
             with traffic(host.addresses, ledger, seed=11):
+                until(lambda: len(ledger.experiments) >= BACKLOG and ledger.uploads, "work was accepted")
                 for fault in what:
                     fault(host, ledger, random.Random(11))
             found = audit(host, ledger)
