@@ -93,8 +93,8 @@ EACH = 60
 new-method: $(VENV)/.ready-dev ## the files of a new method to start from: NAME=my-method, FAMILY=sampling (default: gaussian)
 	@$(BIN)/python scripts/new_method.py "$(NAME)" --family "$(FAMILY)"
 
-chaos: programs ## only the tests that kill processes
-	$(BIN)/pytest $(LEFT_OPEN) -m chaos
+chaos: programs ## the faults of docs/reliability.md at length, for hours: kills by the hundred, outages of a minute
+	CHAOS=long $(BIN)/pytest $(LEFT_OPEN) -m chaos
 
 load: $(VENV)/.ready-dev ## only the tests that send sustained load
 	$(BIN)/pytest $(LEFT_OPEN) -m load

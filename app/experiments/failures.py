@@ -24,7 +24,7 @@ def explain_failure(job: str, error: Exception) -> str:
 
 def unavailability(error: OSError) -> UnavailableError:
     """Say what a file that cannot be read or written is short of: never the experiment's fault."""
-    log.warning("a file of a run cannot be read or written", exc_info=error)
+    log.warning("a file cannot be read or written", exc_info=error)
     if error.errno in FULL:
         return UnavailableError(DISK_SPACE, "There is no room left on the disk of the service's files.")
     return UnavailableError(STORAGE, "The service's files cannot be read or written for now.")

@@ -12,6 +12,7 @@ from starlette.responses import JSONResponse, Response
 from starlette.routing import Match
 
 from app import errors
+from app.experiments.failures import unavailability
 from app.methods.fields import reason
 from app.numbers import quote
 from app.web.headers import API_PREFIX, security_headers
@@ -122,6 +123,12 @@ async def _app_error(request: Request, error: Exception) -> Response:
     )
 
 
+async def _file_error(request: Request, error: Exception) -> Response:
+    """Answer that the storage is away or full: nobody else is to blame that a file cannot be read or written."""
+    assert isinstance(error, OSError)
+    return await _app_error(request, unavailability(error))
+
+
 async def _validation_error(request: Request, error: Exception) -> Response:
     assert isinstance(error, RequestValidationError)
     found = error.errors()
@@ -184,6 +191,7 @@ def install(app: FastAPI, render_error: RenderError) -> None:
     """Register the handlers; ``render_error`` makes the page of an error outside ``/api``."""
     app.state.render_error = render_error
     app.add_exception_handler(errors.AppError, _app_error)
+    app.add_exception_handler(OSError, _file_error)
     app.add_exception_handler(RequestValidationError, _validation_error)
     app.add_exception_handler(HTTPException, _http_error)
     app.add_exception_handler(ClientDisconnect, _client_disconnected)

@@ -5,6 +5,7 @@ import io
 import sqlite3
 import time
 from collections import Counter, defaultdict
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -12,14 +13,13 @@ import httpx
 import numpy as np
 from PIL import Image
 
+from tests.chaos.faults import SIZE
 from tests.chaos.host import Host
 from tests.chaos.ledger import Ledger
 from tests.chaos.runs import double_runs
 from tests.chaos.traffic import SIDE
 
-STUCK_SECONDS = 30.0  # after a fault, without one experiment more that ends
 NOTICE_SECONDS = 8.0  # until a part that is away must be told: a lock is waited for five seconds
-HEALED_SECONDS = 30.0
 JPEG_LEVELS = 12.0  # mean difference that a JPEG may make; of two uploads it is above 50
 UNFINISHED = {"queued", "running"}
 
@@ -77,7 +77,7 @@ def _finish(client: httpx.Client, ledger: Ledger, found: Findings) -> dict[str, 
                 records[experiment] = {"status": "lost", "outputs": []}
             elif answer.status_code == 200 and answer.json()["status"] not in UNFINISHED:
                 records[experiment], moved = answer.json(), time.monotonic()
-        if time.monotonic() - moved > STUCK_SECONDS:
+        if time.monotonic() - moved > SIZE.recovery_seconds:
             found.faults["stuck"] += left
             break
         time.sleep(0.2)
@@ -128,4 +128,17 @@ def _audit_readiness(host: Host, ledger: Ledger, found: Findings) -> None:
             found.faults["not ready"].append(f"web {web}: {last.status} {last.words}")
     if any(answer.status is not None and answer.status not in {200, 503} for answer in ledger.readiness):
         found.faults["readiness"].append("answers that are neither 200 nor 503")
+    found.counts["slowest ready again, s"] = round(max(_gaps(ledger), default=0.0))
     found.counts["looks at /readyz"] = len(ledger.readiness)
+
+
+def _gaps(ledger: Ledger) -> Iterator[float]:
+    """Seconds that each web process was not ready at a stretch; of an outage, those after its end only."""
+    began: dict[int, float] = {}
+    for answer in ledger.readiness:
+        if answer.status != 200:
+            began.setdefault(answer.web, answer.at)
+        elif answer.web in began:
+            start = began.pop(answer.web)
+            ends = [outage.ended for outage in ledger.outages if outage.began - 1 <= start <= outage.ended]
+            yield max(0.0, answer.at - max([start, *ends]))

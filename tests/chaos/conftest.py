@@ -11,6 +11,7 @@ from tests.chaos.host import Kind
 from tests.chaos.ledger import Ledger
 
 ZERO = ("failed", "experiments lost", "stuck", "uploads lost", "bad digests", "other bytes", "ran twice")
+DISK_MEGABYTES = 256
 FIGURES: list[str] = []
 
 
@@ -25,6 +26,7 @@ def record_figures(request: pytest.FixtureRequest) -> Callable[[Kind, Ledger, Fi
             f"{kind}: {suffered}",
             f"{counts['experiments']}, {counts['uploads']}, {counts['refused']}",
             f"{counts['runs again']} of {counts['runs']}",
+            f"{counts['slowest ready again, s']} s",
             *(f"{len(found.faults.get(kind, ()))}" for kind in ZERO),
             ", ".join(f"{words}: {len(those)}" for words, those in found.faults.items() if words not in ZERO and those)
             or "0",
@@ -36,14 +38,16 @@ def record_figures(request: pytest.FixtureRequest) -> Callable[[Kind, Ledger, Fi
 
 @pytest.fixture
 def small_disk(tmp_path: Path) -> Iterator[None]:
-    """A file system of its own for the test's directory."""
-    with faults.small_disk(tmp_path, 256):
+    """A file system of its own for the service's data."""
+    data = tmp_path / "data"
+    data.mkdir()
+    with faults.small_disk(data, DISK_MEGABYTES):
         yield
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
     if FIGURES:
-        heading = ["host and faults", "experiments, uploads, 503s", "run again", *ZERO, "other"]
+        heading = ["host and faults", "experiments, uploads, 503s", "run again", "slowest ready again", *ZERO, "other"]
         terminalreporter.section("what was accepted, and what became of it")
         for row in ("| " + " | ".join(heading) + " |", "|" + "---|" * len(heading), *FIGURES):
             terminalreporter.write_line(row)

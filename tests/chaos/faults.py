@@ -17,7 +17,6 @@ from tests.chaos.ledger import Ledger
 from tests.chaos.processes import until
 
 BREATH_SECONDS = 3.0  # between two kills, at the least
-RECOVERY_SECONDS = 30.0
 
 
 @dataclass(frozen=True)
@@ -29,10 +28,11 @@ class Size:
     stops: int
     stop_seconds: float
     restarts: int
+    recovery_seconds: float  # until it is ready again: the short form runs on machines that do much else
 
 
-SHORT = Size(kills=2, outage_seconds=8.0, stops=2, stop_seconds=4.0, restarts=3)
-LONG = Size(kills=100, outage_seconds=60.0, stops=6, stop_seconds=5.0, restarts=10)
+SHORT = Size(kills=1, outage_seconds=12.0, stops=2, stop_seconds=4.0, restarts=2, recovery_seconds=120.0)
+LONG = Size(kills=100, outage_seconds=60.0, stops=6, stop_seconds=5.0, restarts=10, recovery_seconds=30.0)
 SIZE = LONG if os.environ.get("CHAOS") == "long" else SHORT
 
 Fault = Callable[[Host, Ledger, random.Random], None]
@@ -53,7 +53,7 @@ def killed(name: str, victims: Callable[[Host], list[psutil.Process]], all_at_on
                     except psutil.NoSuchProcess:
                         continue
             time.sleep(BREATH_SECONDS)
-            host.until_ready(RECOVERY_SECONDS)
+            host.until_ready(SIZE.recovery_seconds)
 
     kill.__name__ = f"kill -9 of {name}"
     return kill
@@ -78,7 +78,7 @@ def postgresql_stopped(host: Host, ledger: Ledger, chance: random.Random) -> Non
     for _ in range(SIZE.stops):
         with ledger.outage("PostgreSQL stopped", "database"), host.postgresql.stopped(SIZE.stop_seconds):
             pass
-        host.until_ready(RECOVERY_SECONDS)
+        host.until_ready(SIZE.recovery_seconds)
         time.sleep(chance.uniform(0, 2))
 
 
@@ -90,7 +90,7 @@ def sqlite_locked(host: Host, ledger: Ledger, chance: random.Random) -> None:
             time.sleep(SIZE.outage_seconds)
             connection.execute("ROLLBACK")
     connection.close()
-    host.until_ready(RECOVERY_SECONDS)
+    host.until_ready(SIZE.recovery_seconds)
 
 
 def disk_full(host: Host, ledger: Ledger, chance: random.Random) -> None:
@@ -107,7 +107,7 @@ def disk_full(host: Host, ledger: Ledger, chance: random.Random) -> None:
                     size = max(1, size // 2)
                     time.sleep(0.05 if size == 1 else 0)
         filler.unlink()
-    host.until_ready(RECOVERY_SECONDS)
+    host.until_ready(SIZE.recovery_seconds)
 
 
 def directory_gone(host: Host, ledger: Ledger, chance: random.Random) -> None:
@@ -120,7 +120,7 @@ def directory_gone(host: Host, ledger: Ledger, chance: random.Random) -> None:
             ledger.wrong.append("a new directory of files was made while the old one was away")
             subprocess.run(["rm", "-rf", str(files)], check=True)
         away.rename(files)
-    host.until_ready(RECOVERY_SECONDS)
+    host.until_ready(SIZE.recovery_seconds)
 
 
 def clock_set(host: Host, ledger: Ledger, chance: random.Random) -> None:
@@ -129,7 +129,7 @@ def clock_set(host: Host, ledger: Ledger, chance: random.Random) -> None:
         with ledger.fault("clock set by two days"):
             host.clock.write_text(offset)
             time.sleep(min(SIZE.outage_seconds, 20) / 2)
-        host.until_ready(RECOVERY_SECONDS)
+        host.until_ready(SIZE.recovery_seconds)
 
 
 def restarted(host: Host, ledger: Ledger, chance: random.Random) -> None:
@@ -140,7 +140,7 @@ def restarted(host: Host, ledger: Ledger, chance: random.Random) -> None:
                 started = web.starts
                 web.send(signal.SIGTERM)
                 until(lambda web=web, started=started: web.starts > started, f"{web.name} is started again", 45)
-        host.until_ready(RECOVERY_SECONDS)
+        host.until_ready(SIZE.recovery_seconds)
 
 
 @contextmanager

@@ -46,7 +46,7 @@ class Host:
         self.kind = kind
         self.data = directory / "data"
         self.clock = directory / "clock"
-        self.data.mkdir()
+        self.data.mkdir(exist_ok=True)
         self.clock.write_text("+0")
         self.postgresql = PostgreSQL() if kind.database == "postgresql" else None
         self.environment = self._settings()
@@ -63,7 +63,8 @@ class Host:
             scheduler = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--no-dashboard"]
             where = ["--host", "127.0.0.1", "--port", address.rpartition(":")[2]]
             self.scheduler = self._start("scheduler", [*scheduler, *where])
-            self.workers = [self._start(f"worker-{i}", self.program("worker")) for i in range(2)]
+            worker = [sys.executable, "-m", "distributed.cli.dask_worker", address, "--nthreads", "1", "--no-dashboard"]
+            self.workers = [self._start(f"worker-{i}", worker) for i in range(2)]
         for i, port in enumerate(ports):
             self.webs.append(self._start(f"web-{i}", self.program("serve", "--port", f"{port}")))
 
@@ -95,7 +96,7 @@ class Host:
     def _start(self, name: str, command: list[str]) -> Supervised:
         return Supervised(name, command, self.environment, self._logs / f"{name}.log")
 
-    def until_ready(self, seconds: float = 60.0) -> None:
+    def until_ready(self, seconds: float = 120.0) -> None:
         for address in self.addresses:
             until(lambda address=address: _status(f"{address}/readyz") == 200, f"{address}/readyz says 200", seconds)
 
@@ -121,13 +122,15 @@ class Host:
     # what can be killed
 
     def engine_workers(self) -> list[psutil.Process]:
-        """The processes that compute: children of the fork server."""
-        roots = self.workers or self.webs
-        return [child for root in roots for child in root.children() if _is(child, "forkserver") and not _forks(child)]
+        """The processes that compute: children of the fork server, or of the nannies of an external engine."""
+        if self.workers:
+            return [child for worker in self.workers for child in worker.children() if _is(child, "spawn_main")]
+        return [
+            child for web in self.webs for child in web.children() if _is(child, "forkserver") and not _forks(child)
+        ]
 
     def fork_servers(self) -> list[psutil.Process]:
-        roots = self.workers or self.webs
-        return [child for root in roots for child in root.children() if _forks(child)]
+        return [child for web in self.webs for child in web.children() if _forks(child)]
 
     def decoders(self) -> list[psutil.Process]:
         return [child for web in self.webs for child in web.children() if _is(child, "app.images.intake.server")]

@@ -11,7 +11,7 @@ import pytest
 
 from tests.chaos import faults
 from tests.chaos.audit import Findings, audit, audit_files
-from tests.chaos.faults import Fault
+from tests.chaos.faults import LONG, SIZE, Fault
 from tests.chaos.host import FAKETIME, Kind, running
 from tests.chaos.ledger import Ledger
 from tests.chaos.processes import until
@@ -20,23 +20,39 @@ from tests.chaos.traffic import readiness, traffic
 pytestmark = pytest.mark.chaos
 
 SQLITE, TWO_SQLITE = Kind(), Kind(webs=2)
-POSTGRESQL, TWO_POSTGRESQL = Kind("postgresql"), Kind("postgresql", webs=2)
+TWO_POSTGRESQL = Kind("postgresql", webs=2)
 EXTERNAL = Kind("postgresql", engine="external", webs=2)
 EMBEDDED_KILLS = [faults.one_server, faults.one_worker, faults.all_workers, faults.fork_server, faults.decoder]
 EXTERNAL_KILLS = [faults.one_server, faults.one_worker, faults.all_workers, faults.nanny, faults.scheduler]
 BACKLOG = 8  # experiments that were accepted before the first fault
 
-SCENARIOS: dict[str, tuple[Kind, list[Fault]]] = {
+
+Scenarios = dict[str, tuple[Kind, list[Fault]]]
+IN_SHORT: Scenarios = {
+    "SQLite": (
+        SQLITE,
+        [*EMBEDDED_KILLS, faults.restarted, faults.sqlite_locked, faults.directory_gone, faults.clock_set],
+    ),
+    "PostgreSQL": (TWO_POSTGRESQL, [faults.postgresql_stopped, faults.one_server, faults.one_worker]),
+    "external engine": (EXTERNAL, [faults.one_worker, faults.nanny, faults.scheduler]),
+    "disk full": (SQLITE, [faults.disk_full]),
+}
+AT_LENGTH: Scenarios = {
     "kills on SQLite": (SQLITE, EMBEDDED_KILLS),
     "kills on PostgreSQL": (TWO_POSTGRESQL, EMBEDDED_KILLS),
     "kills of an external engine": (EXTERNAL, EXTERNAL_KILLS),
     "PostgreSQL stopped": (TWO_POSTGRESQL, [faults.postgresql_stopped]),
     "SQLite locked": (TWO_SQLITE, [faults.sqlite_locked]),
     "disk full": (SQLITE, [faults.disk_full]),
+    "disk full beside PostgreSQL": (TWO_POSTGRESQL, [faults.disk_full]),
     "storage away": (SQLITE, [faults.directory_gone]),
+    "storage away beside PostgreSQL": (TWO_POSTGRESQL, [faults.directory_gone]),
     "clock set": (SQLITE, [faults.clock_set]),
+    "clock set beside PostgreSQL": (TWO_POSTGRESQL, [faults.clock_set]),
     "restarts": (SQLITE, [faults.restarted]),
+    "restarts beside PostgreSQL": (TWO_POSTGRESQL, [faults.restarted]),
 }
+SCENARIOS = AT_LENGTH if SIZE is LONG else IN_SHORT
 
 
 @pytest.mark.parametrize("name", SCENARIOS)

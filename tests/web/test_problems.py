@@ -1,6 +1,7 @@
 """Every error under ``/api`` is a problem, every error elsewhere a page."""
 
 import asyncio
+import errno
 import logging
 import pickle
 from typing import cast
@@ -191,6 +192,13 @@ def test_errors_come_out_of_another_process_as_they_were(kind):
     error = kind("database", "It is away.") if kind is errors.UnavailableError else kind("It is wrong.")
     copy = pickle.loads(pickle.dumps(error))
     assert (type(copy), str(copy), vars(copy)) == (kind, error.message, vars(error))
+
+
+@pytest.mark.parametrize("number", [errno.ENOSPC, errno.ENOENT, errno.EIO])
+def test_files_that_cannot_be_read_or_written_are_nobodys_mistake(site, number):
+    response = answer_to(OSError(number, "the disk says no"), site.settings)
+    assert (response.status_code, response.headers["Content-Type"]) == (503, PROBLEM)
+    assert int(response.headers["Retry-After"]) > 0
 
 
 def test_an_unexpected_error_tells_nothing_and_is_logged(site, caplog):

@@ -118,6 +118,8 @@ def take_in(path: Path, directory: Path, limits: Limits) -> Intake:
     ------
     UnsupportedFormatError, BrokenFileError, TooLargeError
         As `app.images.decode.decode`; also if decoding takes more seconds or more memory than the limits allow.
+    OSError
+        If the disk is full, or its files are away for now.
     BusyError
         If no decoder becomes free within a minute: only so many files are decoded at once.
     """
@@ -149,6 +151,8 @@ def _decode(message: bytes, limits: Limits) -> dict[str, Any]:
         return report
     if error := ERRORS.get(report.get("error", "")):
         raise error(report["message"])
+    if report.get("error") == "OSError":
+        raise OSError(report["errno"], "The decoder cannot read or write its files")
     if report.get("error") == "MemoryError":
         raise TooLargeError(
             f"Decoding this file takes more than the {limits.memory / (1 << 20):,.0f} MB of memory that it may use: "

@@ -9,6 +9,7 @@ two lines: what the child reports, then how it ended.
 """
 
 import ctypes
+import errno
 import json
 import logging
 import math
@@ -36,6 +37,8 @@ MESSAGE_BYTES = 1 << 16
 PR_SET_PDEATHSIG = 1
 LATE_IMPORTS = ("png_decode", "cms_transform", "jpeg8_decode", "lzw_decode", "zlib_decode", "packbits_decode")
 PAGE = resource.getpagesize()
+# What a disk says that is full or away; a damaged file makes libraries raise errors of no number, or of others.
+AWAY = {errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS, errno.ENOENT, errno.ENOTDIR, errno.ESTALE, errno.EACCES}
 
 
 @dataclass(frozen=True)
@@ -135,6 +138,9 @@ def _decode(path: Path, destination: Path, limits: Limits) -> dict[str, Any]:
         return {"error": type(error).__name__, "message": error.message}
     except MemoryError:
         return {"error": "MemoryError"}
+    except OSError as error:
+        traceback.print_exc()
+        return {"error": "OSError", "errno": error.errno} if error.errno in AWAY else {"error": "Exception"}
     except Exception:
         traceback.print_exc()
         return {"error": "Exception"}
