@@ -45,6 +45,11 @@ class Availability:
                 self._asked = time.monotonic()
             return self._records
 
+    def require(self) -> None:
+        """Raise `UnavailableError` if an upload or experiment could not be recorded now: before it is written."""
+        if (error := self.unwritable()) is not None:
+            raise UnavailableError(error.part, error.message)
+
     def probe(self) -> None:
         """Try database and storage.
 

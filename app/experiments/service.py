@@ -51,12 +51,12 @@ class Service:
         self.samples = Samples(store, blobs, settings)
         #: Samples as pictures and videos that browsers show.
         self.renditions = Renditions(blobs, cache)
-        #: Which part is away.
-        self.availability = Availability(store, blobs, executor)
         #: The structure index of crops.
         self.meter = Meter(blobs)
+        #: Which part is away.
+        self.availability = Availability(store, blobs, executor)
         #: Accepts or rejects experiments.
-        self.submission = Submission(store, queue, executor, self.samples, settings)
+        self.submission = Submission(store, queue, executor, self.availability, self.samples, settings)
         #: Progress of experiments.
         self.watching = Watching(store, queue.states)
         #: Files of experiments, in every format and depth.

@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 
 from app.errors import ConflictError, DeletedError, NotFoundError
+from app.experiments.availability import Availability
 from app.experiments.model import Experiment
 from app.experiments.ports import Executor, ExperimentStore, JobQueue
 from app.experiments.preparation import NewExperiment, memory_of, prepare
@@ -33,17 +34,24 @@ class Submission:
 
     Parameters
     ----------
-    store, queue, executor, samples
+    store, queue, executor, availability, samples
         Those of the service.
     settings : Settings
     """
 
     def __init__(
-        self, store: ExperimentStore, queue: JobQueue, executor: Executor, samples: Samples, settings: Settings
+        self,
+        store: ExperimentStore,
+        queue: JobQueue,
+        executor: Executor,
+        availability: Availability,
+        samples: Samples,
+        settings: Settings,
     ) -> None:
         self._store = store
         self._queue = queue
         self._executor = executor
+        self._availability = availability
         self._samples = samples
         self._allowed = Allowed.by(settings)
         self._queue_limit = settings.queue_limit
@@ -95,6 +103,8 @@ class Submission:
             If too many experiments wait already.
         QuotaError
             If too many of them are the client's own.
+        UnavailableError
+            If it could not be recorded now; nothing was.
         """
         owner = token_digest(owner_token)
         identifier = new_identifier()
@@ -107,6 +117,7 @@ class Submission:
                 identifier = known
             except DeletedError:
                 pass  # pressed anew since
+        self._availability.require()
         check_queue(self._queue, self._queue_limit)
         client = owner if client is None else client
         self._shares.check(client)

@@ -139,12 +139,15 @@ async def receive_form(request: Request, names: Sequence[str] = ("file",)) -> As
         If the files together have more bytes than the settings allow; they are then not on the disk any more.
     HTTPException
         400 for a malformed form, 415 for a body of another kind.
+    UnavailableError
+        If it could not be kept now; nothing of it was read.
     """
     kind, options = parse_options_header(request.headers.get("content-type"))
     if kind != b"multipart/form-data":
         raise HTTPException(415, f"Send the file as multipart/form-data, in the field '{names[0]}'.")
     if not options.get(b"boundary"):
         raise HTTPException(400, "The Content-Type of the form names no boundary.")
+    await run_in_threadpool(get_service(request).availability.require)
     directory = get_settings(request).data_dir / INCOMING
     targets: dict[str, BinaryIO] = {}
     try:

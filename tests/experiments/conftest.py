@@ -52,7 +52,7 @@ def service(settings: Settings) -> Iterator[Service]:
 
 def a_service(settings: Settings) -> Service:
     settings.data_dir.mkdir(exist_ok=True)
-    store, blobs = SqlStore(settings.sql_url), FileBlobs(settings.data_dir / "files")
+    store, blobs = SqlStore(settings.sql_url), FileBlobs(settings.data_dir / "files", settings.min_free_bytes)
     queue = SqlQueue(store.database)
     return Service(store, queue, blobs, InlineExecutor(settings, run_job, queue), settings)
 

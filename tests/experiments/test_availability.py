@@ -1,12 +1,17 @@
 """Which part is away is asked at most once a second, whoever wants to know."""
 
+from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import pytest
 
-from app.errors import DATABASE, ENGINE, STORAGE, UnavailableError
+from app.errors import DATABASE, DISK_SPACE, ENGINE, STORAGE, UnavailableError
 from app.experiments import availability
 from app.experiments.availability import FRESH_SECONDS, Availability
+from app.experiments.service import Service
+from app.settings import Settings
+from tests.experiments.running import OWNER, a_request
 
 
 class Clock:
@@ -52,6 +57,18 @@ def test_the_part_that_is_away_is_named(clock: Clock, away: int | None) -> None:
     missing, unwritable = found.missing(), found.unwritable()
     assert (missing and missing.part) == (None if away is None else parts[away].name)
     assert (unwritable and unwritable.part) == (None if away in (None, 2) else parts[away].name)
+
+
+def test_what_could_not_be_recorded_is_refused_before_any_of_it_is_written(
+    make_service: Callable[..., Service], settings: Settings, upload: Path
+) -> None:
+    """Free space below the watermark is enough: nobody waits until the disk is full."""
+    sample = make_service().samples.add(upload, None)
+    full = make_service(settings.model_copy(update={"min_free_bytes": 1 << 60}))
+    with pytest.raises(UnavailableError, match="too little room") as raised:
+        full.submission.submit(a_request(sample), OWNER)
+    assert raised.value.part == DISK_SPACE
+    assert sum(full.experiments.counts().values()) == 0
 
 
 def test_an_answer_is_good_for_a_second(clock: Clock) -> None:

@@ -108,6 +108,8 @@ def test_uploads_that_are_decoded_hold_nobody_up(site, serving, picture, until):
         def missing(self) -> None:
             return None
 
+        def require(self) -> None: ...
+
         def counts(self) -> dict[str, int]:
             return {}
 
