@@ -6,11 +6,11 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
 from functools import partial
 
-import anyio
 from fastapi import FastAPI
 from starlette.middleware import Middleware
 from starlette.staticfiles import StaticFiles
 
+from app import threads
 from app.errors import InvalidInputError
 from app.executor.dask import DaskExecutor
 from app.experiments.service import Service
@@ -40,7 +40,6 @@ from app.worker import run_job
 
 log = logging.getLogger(__name__)
 
-UPLOADS_AT_ONCE = 4
 SAFE_TOKEN = 16  # characters
 
 
@@ -126,7 +125,6 @@ def create_app(settings: Settings | None = None, service: Service | None = None)
     app.state.settings, app.state.service, app.state.metrics = settings, service, metrics
     app.state.limits = Limits(settings)
     app.state.stopping = asyncio.Event()
-    app.state.upload_threads = anyio.CapacityLimiter(UPLOADS_AT_ONCE)
     problems.install(app, render_error)
     api = (methods, samples, structure, experiments, events, outputs, synthesize)
     for part in (*api, health, docs):
@@ -142,14 +140,14 @@ def create_app(settings: Settings | None = None, service: Service | None = None)
 async def _lifespan(app: FastAPI) -> AsyncIterator[None]:
     """Start the engine beside the web, which answers from the first moment, and stop it with the web."""
     service: Service = app.state.service
-    await asyncio.to_thread(uploads.remove_abandoned, app.state.settings.data_dir)
-    starting = asyncio.create_task(asyncio.to_thread(service.start))
+    await threads.run(threads.LIFE, uploads.remove_abandoned, app.state.settings.data_dir)
+    starting = asyncio.create_task(threads.run(threads.LIFE, service.start))
     starting.add_done_callback(_log_failure)
     loop, stopping = asyncio.get_running_loop(), app.state.stopping
     with on_stop_signal(lambda: loop.call_soon_threadsafe(stopping.set)):
         yield
     stopping.set()
-    await asyncio.to_thread(service.close)  # first: a start that waits for the engine then ends
+    await threads.run(threads.LIFE, service.close)  # first: a start that waits for the engine then ends
     with suppress(Exception):
         await starting
     end_if_given_up()

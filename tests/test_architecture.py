@@ -16,7 +16,7 @@ FORBIDDEN = ("fastapi", "starlette", "sqlalchemy", "pydantic", "distributed", "P
 
 # From the ground up: a module imports from its own layer and from those below it.
 LAYERS = (
-    {"app.child_environment", "app.errors", "app.numbers", "app.settings"},
+    {"app.child_environment", "app.errors", "app.numbers", "app.settings", "app.threads"},
     {"app.synthesis"},
     {"app.images"},
     {"app.methods", "app.samples", "app.gallery"},

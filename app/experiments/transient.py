@@ -6,6 +6,7 @@ from itertools import zip_longest
 from pathlib import Path
 from typing import Any, Literal
 
+from app import threads
 from app.errors import ConflictError, InvalidInputError
 from app.experiments.experiments import Experiments
 from app.experiments.files.outputs import AnyFormat, Outputs, name_of_file
@@ -75,17 +76,17 @@ class Transient:
         """
         # It goes on to its end if the caller hangs up: only then is known what to forget.
         what = (uploads, method, crops, frames, parameters, output, file_format, depth, client)
-        begun = asyncio.ensure_future(asyncio.to_thread(self._begin, *what))
+        begun = asyncio.ensure_future(threads.run(threads.UPLOADS, self._begin, *what))
         try:
             experiment = await asyncio.shield(begun)
             finished = await self._watching.wait(experiment.id, float("inf"))
             if finished.status is not Status.SUCCEEDED:
                 raise ConflictError(finished.error or "The run was cancelled.")
-            answer, path = await asyncio.to_thread(self._outputs.get, experiment.id, finished.wanted)
+            answer, path = await threads.run(threads.RECORDS, self._outputs.get, experiment.id, finished.wanted)
             media_type = answer.media_type
             if media_type == PNG:
                 path, media_type = await self._outputs.convert(experiment.id, answer.name, file_format, depth)
-            return await asyncio.to_thread(path.read_bytes), media_type
+            return await threads.run(threads.RECORDS, path.read_bytes), media_type
         finally:
             await asyncio.shield(self._forget(begun))
 
@@ -131,4 +132,4 @@ class Transient:
     async def _forget(self, begun: asyncio.Future[Experiment]) -> None:
         await asyncio.wait({begun})
         if begun.exception() is None:
-            await asyncio.to_thread(self._experiments.discard, begun.result())
+            await threads.run(threads.RECORDS, self._experiments.discard, begun.result())

@@ -1,10 +1,8 @@
 """Dependencies of the routes: service, settings, the owner's token and cookie."""
 
 import re
-from collections.abc import Callable
-from typing import Annotated, TypeVar, cast
+from typing import Annotated, cast
 
-import anyio.to_thread
 from fastapi import Depends, Request
 from starlette.responses import Response
 
@@ -23,7 +21,6 @@ _COOKIE_SECONDS = 400 * 24 * 3600  # browsers keep no cookie for longer
 _TOKEN = re.compile(r"[!-~]{16,512}")
 _READING = {"GET", "HEAD"}
 _PRESS = re.compile(r"[0-9a-f]{48}")
-_Result = TypeVar("_Result")
 
 
 def get_service(request: Request) -> Service:
@@ -85,15 +82,6 @@ def remember_owner(request: Request, response: Response, token: str) -> None:
 def base_url(request: Request) -> str:
     """Give the service's public address without a final slash: as the operator, else as the request says."""
     return (get_settings(request).base_url or str(request.base_url)).rstrip("/")
-
-
-async def in_upload_thread(request: Request, call: Callable[..., _Result], *arguments: object) -> _Result:
-    """Run a blocking call on an upload in one of a few threads kept for that.
-
-    Decoding may take seconds: many uploads at once wait for each other here, and keep no thread from the other routes.
-    """
-    limiter = cast(anyio.CapacityLimiter, request.app.state.upload_threads)
-    return await anyio.to_thread.run_sync(call, *arguments, limiter=limiter)
 
 
 ServiceDep = Annotated[Service, Depends(get_service)]

@@ -15,10 +15,11 @@ from python_multipart.multipart import MultipartParser, parse_options_header
 from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 
+from app import threads
 from app.errors import AppError, TooLargeError
 from app.experiments.model import Sample
 from app.web.clients import client_of
-from app.web.deps import get_service, get_settings, in_upload_thread
+from app.web.deps import get_service, get_settings
 from app.web.limits import Limits
 from app.web.middleware.body_limit import format_bytes
 from app.web.middleware.metrics import Metrics
@@ -194,7 +195,7 @@ async def add_sample(request: Request, path: Path, owner: str | None) -> Sample:
     """Make a sample of a received file; what it takes on the disk counts for the client."""
     service = get_service(request)
     try:
-        sample = await in_upload_thread(request, service.samples.add, path, owner)
+        sample = await threads.run(threads.UPLOADS, service.samples.add, path, owner)
     except AppError as error:
         reason = type(error).__name__.removesuffix("Error")
         cast(Metrics, request.app.state.metrics).refused.labels(reason).inc()

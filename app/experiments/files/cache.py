@@ -38,6 +38,11 @@ class FileCache:
             self._add(path, lambda temporary: temporary.write_bytes(make()))
         return path
 
+    def find(self, name: str) -> Path | None:
+        """Find the file of this name; None if it is not there."""
+        path = self._directory / name
+        return path if _touch(path) else None
+
     def file(self, name: str, write: Callable[[Path], None]) -> Path:
         """Find the file of this name, or have one thread write it while others wait: for what takes long."""
         path = self._directory / name
@@ -98,6 +103,26 @@ class FileCache:
                     if not path.name.startswith(UNFINISHED) or time.time() - state.st_mtime > ABANDONED_SECONDS:
                         found.append((state.st_atime, state.st_size, path))
         return found
+
+
+class NotKeptError(Exception):
+    """The cache has no such file."""
+
+
+class KeptFiles:
+    """The files that a cache has: nothing is made, and what is not there raises `NotKeptError`."""
+
+    def __init__(self, cache: FileCache) -> None:
+        self._cache = cache
+
+    def get(self, name: str, make: object) -> Path:
+        """Find the file of this name."""
+        path = self._cache.find(name)
+        if path is None:
+            raise NotKeptError(name)
+        return path
+
+    file = get
 
 
 def _touch(path: Path) -> bool:

@@ -1,11 +1,11 @@
 """Output files of experiments: as they are stored, in other formats, at 16 bits."""
 
-import asyncio
 from pathlib import Path
 from typing import Literal, Protocol
 
+from app import threads
 from app.errors import AppError, BusyError, InvalidInputError, NotFoundError
-from app.experiments.files.renditions import DERIVED, PNG, Renditions, VideoFormat, check_deep
+from app.experiments.files.renditions import DERIVED, PNG, Renditions, VideoFormat, check_deep, found_or_made
 from app.experiments.model import Experiment, Output, deep_job, deep_name
 from app.experiments.ports import BlobStore, Executor, ExperimentStore, JobQueue
 from app.experiments.queue import check_queue
@@ -92,9 +92,20 @@ class Outputs:
 
     def get(self, experiment_id: str, name: str) -> tuple[Output, Path]:
         """Find an output and its file. Raises `NotFoundError`, also while it is not there yet."""
+        return self._get(self._renditions, experiment_id, name)
+
+    async def fetch(self, experiment_id: str, name: str) -> tuple[Output, Path]:
+        """Find an output as `get` does, without a wait for pictures that are still to be made."""
+
+        def find(renditions: Renditions) -> tuple[Output, Path]:
+            return self._get(renditions, experiment_id, name)
+
+        return await found_or_made(self._renditions, find)
+
+    def _get(self, renditions: Renditions, experiment_id: str, name: str) -> tuple[Output, Path]:
         experiment = self._store.get(experiment_id)
         if name in DERIVED:
-            return self._renditions.derive(name, self._output(experiment, "crop"), self._output(experiment, "texture"))
+            return renditions.derive(name, self._output(experiment, "crop"), self._output(experiment, "texture"))
         output = self._output(experiment, name)
         return output, self._blobs.path(output.digest)
 
@@ -153,16 +164,16 @@ class Outputs:
         client: str | None = None,
     ) -> Output:
         """Find what `convert` converts, or have it computed first, in a job of its own. Raises as `convert`."""
-        output = await asyncio.to_thread(self.find_source, experiment_id, name, file_format, depth)
+        output = await threads.run(threads.RECORDS, self.find_source, experiment_id, name, file_format, depth)
         if output is not None:
             return output
         job = deep_job(experiment_id, name)
-        await asyncio.to_thread(self._enqueue, experiment_id, job, client)
+        await threads.run(threads.RECORDS, self._enqueue, experiment_id, job, client)
         if not await self._watching.wait_until_left(job, DEEP_SECONDS):
             raise BusyError(f"The {name} at 16 bits is still being computed. Try again in a minute.")
-        output = await asyncio.to_thread(self.find_source, experiment_id, name, file_format, depth)
+        output = await threads.run(threads.RECORDS, self.find_source, experiment_id, name, file_format, depth)
         if output is None:
-            failure = await asyncio.to_thread(self._queue.failure, job)
+            failure = await threads.run(threads.RECORDS, self._queue.failure, job)
             raise AppError(failure or f"The {name} at 16 bits could not be computed. Try again.")
         return output
 
@@ -174,7 +185,9 @@ class Outputs:
             return self._blobs.path(output.digest), output.media_type
         assert file_format != "webm"  # `name_of_file` lets these through for videos only
         assert file_format != "mp4"
-        return await asyncio.to_thread(self._renditions.convert, output, file_format or "png", depth)
+        return await found_or_made(
+            self._renditions, lambda renditions: renditions.convert(output, file_format or "png", depth)
+        )
 
     def _output(self, experiment: Experiment, name: str) -> Output:
         output = experiment.output(name)

@@ -3,10 +3,11 @@
 import hashlib
 from collections.abc import Callable
 from pathlib import Path
-from typing import Literal
+from typing import Literal, TypeVar
 
+from app import threads
 from app.errors import InvalidInputError, NotFoundError
-from app.experiments.files.cache import FileCache
+from app.experiments.files.cache import FileCache, KeptFiles, NotKeptError
 from app.experiments.files.versions import CONVERTER
 from app.experiments.model import Output, Sample, check_frame
 from app.experiments.ports import BlobStore
@@ -38,14 +39,21 @@ DERIVED = {
     **dict.fromkeys(POSTERS.values(), "First frame"),
 }
 PNG = "image/png"
+_Result = TypeVar("_Result")
 
 
 class Renditions:
     """Renditions of samples and conversions of outputs, under the digest of what they were made from."""
 
-    def __init__(self, blobs: BlobStore, cache: FileCache) -> None:
+    def __init__(self, blobs: BlobStore, cache: FileCache | KeptFiles) -> None:
         self._blobs = blobs
         self._cache = cache
+
+    @property
+    def kept(self) -> "Renditions":
+        """Those that are made already: it raises `NotKeptError` instead of making one."""
+        assert isinstance(self._cache, FileCache)
+        return Renditions(self._blobs, KeptFiles(self._cache))
 
     def image(self, sample: Sample, size: int | None, frame: int = 0) -> tuple[Path, str]:
         """Make a picture, of a video one frame, that browsers show: as it is stored, or smaller; and its media type.
@@ -143,6 +151,14 @@ class Renditions:
         if not output.video:
             return stored
         return self._cache.get(f"{output.digest}-first-{CONVERTER}.png", lambda: encode_png(read_first_frame(stored)))
+
+
+async def found_or_made(renditions: Renditions, ask: Callable[[Renditions], _Result]) -> _Result:
+    """Ask for a file: at once if it is kept, in its turn if it is to be made."""
+    try:
+        return await threads.run(threads.RECORDS, ask, renditions.kept)
+    except NotKeptError:
+        return await threads.run(threads.PICTURES, ask, renditions)
 
 
 def _part(sample: Sample, frame: int) -> str:

@@ -81,7 +81,7 @@ async def experiment_output(
 ) -> Response:
     """Supports `Range`, `If-None-Match` and `HEAD`."""
     experiment = await run_in_threadpool(service.experiments.get, experiment_id)
-    output, path = await run_in_threadpool(service.outputs.get, experiment_id, name)
+    output, path = await service.outputs.fetch(experiment_id, name)
     media_type, tag, current = output.media_type, output.digest, stored_version(output.digest)
     public = experiment.listed or is_exhibit(experiment)
     if format is not None or depth is not None:

@@ -8,14 +8,14 @@ from starlette.concurrency import run_in_threadpool
 from starlette.responses import FileResponse, Response
 
 from app.errors import InvalidInputError
-from app.experiments.files.renditions import VideoFormat, rendition_bound
+from app.experiments.files.renditions import VideoFormat, found_or_made, rendition_bound
 from app.experiments.files.versions import made_tag, made_version, stored_version
 from app.experiments.model import Sample
 from app.numbers import FAR
 from app.web.api.bodies import IDENTIFIER
 from app.web.api.openapi import EXAMPLE_SAMPLE, OWNER, problems
 from app.web.api.records import API, SampleList, SampleRecord
-from app.web.deps import ServiceDep, TokenDep, base_url, in_upload_thread
+from app.web.deps import ServiceDep, TokenDep, base_url
 from app.web.file_response import SUFFIXES, Version, cache_control, file_response
 from app.web.limits import VIEWS, take, take_upload
 from app.web.uploads import add_sample, receive_form
@@ -122,7 +122,7 @@ async def sample_image(
     sample = await run_in_threadpool(service.samples.get, sample_id)
     if not sample.bundled:
         take(request, VIEWS)
-    path, media_type = await in_upload_thread(request, service.renditions.image, sample, size, frame)
+    path, media_type = await found_or_made(service.renditions, lambda renditions: renditions.image(sample, size, frame))
     if size is None and not sample.moving:
         return _answer(request, sample, path, media_type, sample.digest, version, stored_version(sample.digest))
     tag = made_tag(sample.digest, sample.height, frame, size and rendition_bound(size))
@@ -154,7 +154,7 @@ async def sample_video(
     sample = await run_in_threadpool(service.samples.get, sample_id)
     if not sample.bundled:
         take(request, VIEWS)
-    path, media_type = await in_upload_thread(request, service.renditions.video, sample, file_format)
+    path, media_type = await found_or_made(service.renditions, lambda renditions: renditions.video(sample, file_format))
     tag = made_tag(sample.digest, sample.height, f"{sample.rate:g}", file_format)
     return _answer(request, sample, path, media_type, tag, version, made_version(sample.digest))
 

@@ -6,6 +6,7 @@ from fastapi import APIRouter, Query, Request
 from pydantic import BaseModel, Field
 from starlette.concurrency import run_in_threadpool
 
+from app import threads
 from app.experiments.meter import Verdict, interpret
 from app.images.crop import Rectangle
 from app.numbers import FAR
@@ -14,7 +15,7 @@ from app.web.api.bodies import Crop
 from app.web.api.openapi import problems
 from app.web.api.records import API
 from app.web.api.samples import SampleId
-from app.web.deps import ServiceDep, in_upload_thread
+from app.web.deps import ServiceDep
 from app.web.limits import VIEWS, take
 
 LARGEST_SIGMA = 64
@@ -62,7 +63,7 @@ async def read_structure(
     take(request, VIEWS)
     sample = await run_in_threadpool(service.samples.get, sample_id)
     area = Rectangle.parse(crop) if crop else Rectangle(0, 0, sample.width, sample.height)
-    found = await in_upload_thread(request, service.meter.structure, sample, area, sigma, frame)
+    found = await threads.run(threads.PICTURES, service.meter.structure, sample, area, sigma, frame)
     reading = interpret(found.delta)
     return StructureIndex(
         delta=None if found.delta is None else round(found.delta, 4),
