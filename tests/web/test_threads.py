@@ -5,6 +5,7 @@ import threading
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 import anyio
 
@@ -32,7 +33,7 @@ def crowded(site, monkeypatch, *groups):
     """Take every thread of these groups by requests."""
     upload = {"files": {"file": ("photo.png", b"")}}
     area = {"params": {"x": 0, "y": 0, "width": 32, "height": 32}}
-    ways = {
+    ways: dict[str, tuple[Any, str, tuple[str, str], dict[str, Any]]] = {
         threads.UPLOADS: (site.service.samples, "add", ("POST", "/api/v1/samples"), upload),
         threads.PICTURES: (site.service.meter, "structure", ("GET", "/api/v1/samples/gravel_gray/structure"), area),
     }
