@@ -46,8 +46,9 @@ class Database:
     def __init__(self, url: str) -> None:
         parsed = parse_url(url)
         self.sqlite = parsed.get_backend_name() == "sqlite"
+        self._path: Path | None = None
         if self.sqlite:
-            path = Path(parsed.database or "").resolve()
+            self._path = path = Path(parsed.database or "").resolve()
             path.parent.mkdir(parents=True, exist_ok=True)
             self._turn: threading.Lock | None = _turn_of(str(path))
             there = (
@@ -77,6 +78,11 @@ class Database:
                 postgresql_readonly=True
             )
 
+    @property
+    def exists(self) -> bool:
+        """Whether there is a database to read; of SQLite, its file."""
+        return self._path is None or self._path.is_file()
+
     def close(self) -> None:
         self._writers.dispose()
         self._readers.dispose()
@@ -99,10 +105,17 @@ class Database:
             yield connection
 
     @contextmanager
-    def writing(self) -> Iterator[Connection]:
-        """Begin a transaction that writes: on SQLite with the write lock, so that it cannot fail half-way."""
-        deadline = time.monotonic() + WAIT_SECONDS
-        with self._my_turn(), _available(), self._writers.begin() as connection:
+    def writing(self, seconds: float | None = None) -> Iterator[Connection]:
+        """Begin a transaction that writes: on SQLite with the write lock, so that it cannot fail half-way.
+
+        Parameters
+        ----------
+        seconds : float, optional
+            How long to wait for other writers instead of `WAIT_SECONDS`.
+        """
+        wait = seconds or WAIT_SECONDS
+        deadline = time.monotonic() + wait
+        with self._my_turn(wait), _available(), self._writers.begin() as connection:
             left = max(0, int((deadline - time.monotonic()) * 1000))
             if self.sqlite:
                 connection.exec_driver_sql(f"PRAGMA busy_timeout={left}")
@@ -112,12 +125,12 @@ class Database:
             yield connection
 
     @contextmanager
-    def _my_turn(self) -> Iterator[None]:
+    def _my_turn(self, wait: float) -> Iterator[None]:
         """Wait for the other writers of this process, before taking a connection that others might need."""
         if self._turn is None:
             yield
             return
-        if not self._turn.acquire(timeout=WAIT_SECONDS):
+        if not self._turn.acquire(timeout=wait):
             raise _unavailable("other writers did not end in time")
         try:
             yield

@@ -58,12 +58,16 @@ def put_back(connection: Connection, job: str, attempts: Sequence[Attempt]) -> N
     charged = attempt_values(attempts)
     values: dict[str, Any] = {"holder": None, "stage": None, "fraction": 0.0, "started_at": None}
     connection.execute(jobs.update().where(jobs.c.id == job).values(**values, attempts=charged))
-    connection.execute(unfinished(job).values(status=Status.QUEUED, started_at=None, attempts=charged))
+    connection.execute(unfinished(job).values(status=Status.QUEUED, started_at=None, charges=charged))
 
 
 def unfinished(experiment_id: str) -> sa.Update:
     """Change an experiment that is queued or runs."""
     return experiments.update().where(experiments.c.id == experiment_id, experiments.c.status.in_(UNFINISHED))
+
+
+def name_of(lease: Lease | str) -> str:
+    return lease if isinstance(lease, str) else lease.job
 
 
 def now() -> datetime:

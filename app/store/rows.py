@@ -32,7 +32,7 @@ def row_of_experiment(experiment: Experiment) -> dict[str, Any]:
     row["timings"] = dict(experiment.timings)
     row["diagnostics"] = dict(experiment.diagnostics)
     row["environment"] = dict(experiment.environment)
-    row["attempts"] = attempt_values(experiment.attempts)
+    row["charges"] = attempt_values(row.pop("attempts"))
     return row
 
 
@@ -75,9 +75,9 @@ def experiments_of(rows: Sequence[Row], input_rows: Sequence[Row], output_rows: 
     return [
         Experiment(
             **{
-                **row._mapping,
+                **{name: value for name, value in row._mapping.items() if name != "charges"},
                 "status": Status(row.status),
-                "attempts": attempts_of(row.attempts),
+                "attempts": attempts_of(row.charges),
                 "inputs": tuple(inputs[row.id]),
                 "outputs": tuple(outputs[row.id]),
             }

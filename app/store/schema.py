@@ -1,13 +1,10 @@
-"""Schema of the database: its tables and their upgrade."""
+"""Schema of the database: its tables, as the newest of `migrations/versions` leaves them."""
 
 from datetime import UTC, datetime, timedelta
 
 import sqlalchemy as sa
-from sqlalchemy.engine import Connection, Dialect
+from sqlalchemy.engine import Dialect
 
-from app.store.database import Database
-
-SCHEMA_LOCK = 0x6D6963726F  # any constant: names the advisory lock that PostgreSQL's schema is made under
 EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
 
 
@@ -56,7 +53,7 @@ experiments = sa.Table(
     sa.Column("owner", sa.Text, nullable=False),
     sa.Column("created_at", Moment, nullable=False),
     sa.Column("status", sa.Text, nullable=False),
-    sa.Column("attempts", sa.JSON, nullable=False, server_default=sa.text("'[]'")),
+    sa.Column("charges", sa.JSON, nullable=False, server_default=sa.text("'[]'")),
     sa.Column("timings", sa.JSON, nullable=False),
     sa.Column("diagnostics", sa.JSON, nullable=False, server_default=sa.text("'{}'")),
     sa.Column("environment", sa.JSON, nullable=False, server_default=sa.text("'{}'")),
@@ -118,34 +115,3 @@ jobs = sa.Table(
     sa.Column("error", sa.Text),
     sa.Column("failed_at", Moment),
 )
-
-
-def make_schema(database: Database) -> None:
-    """Make the schema, or bring that of an earlier version up to date; safe when several processes start at once."""
-    with database.writing() as connection:
-        if connection.dialect.name == "postgresql":
-            connection.execute(sa.select(sa.func.pg_advisory_xact_lock(SCHEMA_LOCK)))
-        without_jobs = not sa.inspect(connection).has_table("jobs")
-        metadata.create_all(connection)
-        _add_new_columns(connection)
-        if without_jobs:
-            columns = (experiments.c.id, experiments.c.owner, experiments.c.created_at)
-            unfinished = sa.select(*columns).where(experiments.c.status.in_(("queued", "running")))
-            connection.execute(jobs.insert().from_select(["id", "client", "queued_at"], unfinished))
-
-
-def _add_new_columns(connection: Connection) -> None:
-    """Bring the tables of an earlier version up to date: what was added since has a default for their rows."""
-    counts = {column["name"]: column["type"] for column in sa.inspect(connection).get_columns("experiments")}
-    if isinstance(counts.get("attempts"), sa.Integer):
-        connection.execute(sa.text("ALTER TABLE experiments DROP COLUMN attempts"))
-    known = sa.inspect(connection)
-    for table in metadata.sorted_tables:
-        present = {column["name"] for column in known.get_columns(table.name)}
-        for column in table.columns:
-            if column.name not in present:
-                declared = sa.schema.CreateColumn(column).compile(dialect=connection.dialect)
-                connection.execute(sa.text(f"ALTER TABLE {table.name} ADD COLUMN {declared}"))
-                if column is outputs.c.kind:
-                    main = outputs.c.name == "texture"
-                    connection.execute(outputs.update().where(main).values(kind="texture"))

@@ -11,7 +11,8 @@ from sqlalchemy.exc import IntegrityError
 from app.errors import ConflictError, DeletedError, NotFoundError
 from app.experiments.model import DEEP, Attempt, Experiment, Lease, Output, Page, Sample, Status
 from app.store.database import Database
-from app.store.jobs import UNFINISHED, held, now, put, remove, remove_with_deep, unfinished
+from app.store.jobs import UNFINISHED, held, name_of, now, put, remove, remove_with_deep, unfinished
+from app.store.migrate import upgrade
 from app.store.rows import (
     attempt_values,
     cursor_after,
@@ -23,7 +24,7 @@ from app.store.rows import (
     row_of_sample,
     sample_of,
 )
-from app.store.schema import deleted, experiments, inputs, make_schema, outputs, samples
+from app.store.schema import deleted, experiments, inputs, outputs, samples
 
 BATCH = 500  # values of one IN (…): below every database's limit
 
@@ -39,7 +40,11 @@ class SqlStore:
 
     def __init__(self, url: str) -> None:
         self.database = Database(url)
-        make_schema(self.database)
+        try:
+            upgrade(self.database)
+        except BaseException:
+            self.database.close()
+            raise
 
     def close(self) -> None:
         self.database.close()
@@ -147,7 +152,7 @@ class SqlStore:
         return self._ids(query)
 
     def start(self, lease: Lease | str) -> Experiment | None:
-        job, moment = _name(lease), now()
+        job, moment = name_of(lease), now()
         changes: dict[str, Any] = {"status": Status.RUNNING, "started_at": moment}
         with self.database.writing() as connection:
             if held(connection, lease) is None and isinstance(lease, Lease):
@@ -157,7 +162,7 @@ class SqlStore:
                 return None
             if isinstance(lease, str):
                 begun = Attempt(moment, "A worker began it.")
-                changes["attempts"] = attempt_values((*found[0].attempts, begun))
+                changes["charges"] = attempt_values((*found[0].attempts, begun))
             connection.execute(unfinished(job).values(changes))
             return self._read(connection, experiments.select().where(experiments.c.id == job))[0]
 
@@ -169,7 +174,7 @@ class SqlStore:
         diagnostics: Mapping[str, Any],
         environment: Mapping[str, str],
     ) -> bool:
-        job = _name(lease)
+        job = name_of(lease)
         with self.database.writing() as connection:
             if held(connection, lease) is None and isinstance(lease, Lease):
                 return False
@@ -200,9 +205,9 @@ class SqlStore:
                 if row is None:
                     return False
                 if cause is not None:
-                    values["attempts"] = [*row.attempts, *attempt_values((Attempt(now(), cause),))]
-            remove(connection, _name(lease))
-            return bool(connection.execute(unfinished(_name(lease)).values(values)).rowcount)
+                    values["charges"] = [*row.attempts, *attempt_values((Attempt(now(), cause),))]
+            remove(connection, name_of(lease))
+            return bool(connection.execute(unfinished(name_of(lease)).values(values)).rowcount)
 
     def cancel(self, experiment_id: str) -> bool:
         with self.database.writing() as connection:
@@ -211,7 +216,7 @@ class SqlStore:
             return bool(connection.execute(change).rowcount)
 
     def add_output(self, lease: Lease | str, output: Output) -> bool:
-        experiment_id = _name(lease).partition(DEEP)[0]
+        experiment_id = name_of(lease).partition(DEEP)[0]
         with self.database.writing() as connection:
             if held(connection, lease) is None and isinstance(lease, Lease):
                 return False
@@ -287,10 +292,6 @@ class SqlStore:
             for table in (inputs, outputs)
         ]
         return experiments_of(rows, *parts)
-
-
-def _name(lease: Lease | str) -> str:
-    return lease if isinstance(lease, str) else lease.job
 
 
 def _text(value: str) -> str:
