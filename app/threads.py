@@ -15,7 +15,7 @@ LIFE = "life"
 #: Database and files, milliseconds each: the group of Starlette's own routes, `run_in_threadpool` included.
 RECORDS = "records"
 
-AT_ONCE = {UPLOADS: 4, PICTURES: 4, LIFE: 2}
+AT_ONCE = {UPLOADS: 4, PICTURES: 8, LIFE: 2}
 
 _Result = TypeVar("_Result")
 _limiters: RunVar[dict[str, anyio.CapacityLimiter]] = RunVar("limiters")

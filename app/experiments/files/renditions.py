@@ -1,6 +1,7 @@
 """Renditions: cached files made from stored ones, for browsers to show and people to download."""
 
 import hashlib
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Literal, TypeVar
@@ -15,13 +16,10 @@ from app.images.convert import (
     PREVIEW,
     THUMBNAIL,
     Format,
-    convert,
     flatten,
-    make_link_preview,
-    make_rendition,
-    make_thumbnails,
     read_depth,
 )
+from app.images.intake.making import make
 from app.images.png_writer import encode_png
 from app.images.stored_video import read_frame
 from app.images.video.reader import read_first_frame
@@ -71,7 +69,9 @@ class Renditions:
         bound = rendition_bound(size)
         media_type = PNG if sample.transparent else "image/jpeg"
         name = f"{_part(sample, frame)}-{bound}-{CONVERTER}.{media_type.removeprefix('image/')}"
-        return self._cache.get(name, lambda: make_rendition(self._still(sample, frame), bound)[0]), media_type
+        return self._cache.file(
+            name, lambda path: make("rendition", [self._still(sample, frame)], [path], longest_side=bound)
+        ), media_type
 
     def _still(self, sample: Sample, frame: int) -> Path:
         stored = self._blobs.path(sample.digest)
@@ -110,7 +110,9 @@ class Renditions:
         if output.media_type == media_type and not narrowed:
             return stored, media_type
         name = f"{output.digest}{'-8' if narrowed else ''}-{CONVERTER}.{file_format}"
-        return self._cache.get(name, lambda: convert(stored, file_format, narrowed)[0]), media_type
+        return self._cache.file(
+            name, lambda path: make("convert", [stored], [path], file_format=file_format, depth=narrowed)
+        ), media_type
 
     def derive(self, name: str, crop: Output, texture: Output) -> tuple[Output, Path]:
         """Make one of the pictures that stand for an experiment in lists and elsewhere.
@@ -121,21 +123,23 @@ class Renditions:
             return self._poster(name, crop, texture)
         stored = self._picture(crop), self._picture(texture)
 
-        def cached(part: str, make: Callable[[], bytes]) -> Path:
-            return self._cache.get(f"{texture.digest}-{crop.digest}-{CONVERTER}{part}", make)
-
+        begin = f"{texture.digest}-{crop.digest}-{CONVERTER}"
         if name == PREVIEW_NAME:
-            path, media_type = cached(name, lambda: make_link_preview(*stored)), "image/jpeg"
+            path = self._cache.file(begin + name, lambda path: make("preview", stored, [path]))
+            media_type = "image/jpeg"
         else:
 
-            def both() -> bytes:
-                pictures = dict(zip(THUMBNAIL_NAMES, make_thumbnails(*stored), strict=True))
-                for each, data in pictures.items():
-                    if each != name:
-                        cached(each, lambda data=data: data)  # type: ignore[misc] # a browser asks for it next
-                return pictures[name]
+            def both(path: Path) -> None:
+                with tempfile.TemporaryDirectory() as directory:
+                    made = [Path(directory, each) for each in THUMBNAIL_NAMES]
+                    make("thumbnails", stored, made)
+                    for each, file in zip(THUMBNAIL_NAMES, made, strict=True):
+                        if each != name:
+                            self._cache.get(begin + each, file.read_bytes)  # a browser asks for it next
+                        else:
+                            path.write_bytes(file.read_bytes())
 
-            path, media_type = cached(name, both), "image/webp"
+            path, media_type = self._cache.file(begin + name, both), "image/webp"
         width, height = PREVIEW if name == PREVIEW_NAME else _thumbnail_size(name, crop, texture)
         size, digest = path.stat().st_size, derived_digest(name, crop, texture)
         return Output(name, DERIVED[name], width, height, media_type=media_type, bytes=size, digest=digest), path

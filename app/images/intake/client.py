@@ -143,7 +143,7 @@ def take_in(path: Path, directory: Path, limits: Limits) -> Intake:
 def _decode(message: bytes, limits: Limits) -> dict[str, Any]:
     report: dict[str, Any] = {}
     for _ in range(2):  # once more if the server was killed, which says nothing about the file
-        report = _collect_answer(message, limits)
+        report = collect_answer(message, limits)
         if report:
             break
     if "width" in report:
@@ -169,7 +169,7 @@ def _decode(message: bytes, limits: Limits) -> dict[str, Any]:
     )
 
 
-def _collect_answer(message: bytes, limits: Limits) -> dict[str, Any]:
+def collect_answer(message: bytes, limits: Limits) -> dict[str, Any]:
     """Collect the reports of the child and of the server; empty if the server dies."""
     report: dict[str, Any] = {}
     with server.ask(message) as answer:

@@ -22,6 +22,7 @@ import sys
 import time
 import traceback
 import warnings
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -29,9 +30,10 @@ from typing import Any
 import imagecodecs
 from PIL import Image
 
-from app.errors import AppError
+from app.errors import AppError, InvalidInputError
 from app.images.decode import Limits
 from app.images.intake.store import store
+from app.images.intake.tasks import perform
 
 MESSAGE_BYTES = 1 << 16
 PR_SET_PDEATHSIG = 1
@@ -96,7 +98,7 @@ def _start_child(message: bytes, answer: socket.socket) -> tuple[int, _Child]:
     if pid == 0:
         try:
             _confine(server, limits)
-            _send(answer, _decode(Path(fields["path"]), Path(fields["destination"]), limits))
+            _send(answer, _work(fields, limits))
         finally:
             os._exit(0)
     return os.pidfd_open(pid), _Child(pid, answer, time.monotonic() + limits.seconds)
@@ -131,11 +133,29 @@ def _confine(server: int, limits: Limits) -> None:
     warnings.simplefilter("error", Image.DecompressionBombWarning)
 
 
+def _work(fields: dict[str, Any], limits: Limits) -> dict[str, Any]:
+    if "task" not in fields:
+        return _decode(Path(fields["path"]), Path(fields["destination"]), limits)
+    sources, destinations = (list(map(Path, fields[name])) for name in ("sources", "destinations"))
+
+    def make() -> dict[str, Any]:
+        perform(fields["task"], sources, destinations, fields["arguments"])
+        return {"made": True}
+
+    return _report(make)
+
+
 def _decode(path: Path, destination: Path, limits: Limits) -> dict[str, Any]:
+    return _report(lambda: store(path, destination, limits).properties())
+
+
+def _report(work: Callable[[], dict[str, Any]]) -> dict[str, Any]:
     try:
-        return store(path, destination, limits).properties()
+        return work()
     except AppError as error:
-        return {"error": type(error).__name__, "message": error.message}
+        return {"error": type(error).__name__, "message": error.message} | (
+            {"field": error.field} if isinstance(error, InvalidInputError) else {}
+        )
     except MemoryError:
         return {"error": "MemoryError"}
     except OSError as error:

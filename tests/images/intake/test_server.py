@@ -164,7 +164,7 @@ def test_a_disk_that_is_away_is_not_taken_for_a_damaged_file(
 ) -> None:
     report = server._decode(SAMPLES / "tiles02.png", tmp_path / "nowhere" / "stored.png", Limits())
     ended = {**report, "ended": "itself"}
-    monkeypatch.setattr(client, "_collect_answer", lambda *_arguments: ended)
+    monkeypatch.setattr(client, "collect_answer", lambda *_arguments: ended)
     with pytest.raises(FileNotFoundError):
         client.take_in(SAMPLES / "tiles02.png", tmp_path, Limits())
     assert not list(tmp_path.iterdir())
