@@ -5,7 +5,8 @@ import threading
 from datetime import UTC, datetime
 from pathlib import Path
 
-from app.errors import AppError
+from app.errors import AppError, UnavailableError
+from app.experiments.failures import unavailability
 from app.experiments.model import Sample
 from app.experiments.ports import BlobStore, ExperimentStore
 from app.experiments.tokens import new_identifier, token_digest
@@ -60,8 +61,17 @@ class Samples:
                 continue
             try:
                 self._add(entry.path, entry.id, None, title=entry.title)
+            except UnavailableError:
+                raise
             except AppError as error:
                 log.error("the bundled sample %s cannot be used: %s", entry.path, error)
+            except OSError as error:
+                if entry.path.is_file():
+                    raise unavailability(error) from error
+                log.error("the bundled sample %s is not there", entry.path)
+            except Exception:
+                if not self._is_bundled(entry.id):  # otherwise another process took it in at the same time
+                    raise
 
     def open(self) -> None:
         """Start the process that decodes, so that the first upload need not wait for it."""
@@ -74,6 +84,9 @@ class Samples:
     def has_transparency(self, sample: Sample, crop: Rectangle, frames: Frames) -> bool:
         """Whether the crop holds pixels that are not opaque."""
         return frames_have_transparency(self._blobs.path(sample.digest), crop, frames, sample.height)
+
+    def _is_bundled(self, sample_id: str) -> bool:
+        return any(sample.id == sample_id for sample in self._store.bundled_samples())
 
     def _add(self, path: Path, sample_id: str, owner: str | None, *, title: str | None) -> Sample:
         found = take_in(path, self._blobs.temporary_directory, self._limits)

@@ -1,5 +1,6 @@
 """Samples are taken in once; what comes with the service is found again, and one that is broken keeps no other out."""
 
+import errno
 import logging
 import shutil
 import threading
@@ -9,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.errors import BrokenFileError, NotFoundError
+from app.errors import DATABASE, BrokenFileError, NotFoundError, UnavailableError
 from app.experiments import samples as module
 from app.experiments.model import Sample
 from app.experiments.samples import Samples
@@ -48,6 +49,38 @@ def test_a_bundled_sample_that_cannot_be_read_is_logged_and_keeps_no_other_out(
     ]
     assert [record.levelno for record in caplog.records] == [logging.ERROR]
     assert f"the bundled sample {three[1].path} cannot be used: " in caplog.records[0].message
+
+
+def test_bundled_samples_may_be_taken_in_by_two_services_at_once(
+    make_service: Callable[..., Service], three: list[BundledSample], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    one, other = make_service().samples, make_service().samples
+    add = Samples._add
+
+    def late(self: Samples, path: Path, sample_id: str, owner: str | None, *, title: str | None) -> Sample:
+        if self is one and path == three[0].path:
+            add(other, path, sample_id, owner, title=title)
+        return add(self, path, sample_id, owner, title=title)
+
+    monkeypatch.setattr(Samples, "_add", late)
+    one.add_bundled(threading.Event())
+    assert [sample.id for sample in one.bundled()] == ["first", "third"]
+
+
+@pytest.mark.parametrize("error", [UnavailableError(DATABASE, "It is away."), OSError(errno.ENOSPC, "full")])
+def test_bundled_samples_wait_for_what_is_away(
+    make_service: Callable[..., Service],
+    three: list[BundledSample],
+    monkeypatch: pytest.MonkeyPatch,
+    error: Exception,
+) -> None:
+    def fail(*_arguments: object, title: str | None) -> Sample:
+        raise error
+
+    samples = make_service().samples
+    monkeypatch.setattr(Samples, "_add", fail)
+    with pytest.raises(UnavailableError, match=r"away|room"):
+        samples.add_bundled(threading.Event())
 
 
 def test_bundled_samples_are_taken_in_once(
