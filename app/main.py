@@ -17,6 +17,7 @@ from app.experiments.service import Service
 from app.samples import require_files
 from app.settings import ROOT, Settings
 from app.store.blobs import FileBlobs
+from app.store.copy import copy_database
 from app.store.queue import SqlQueue
 from app.store.sql import SqlStore
 from app.synthesis import __version__
@@ -77,6 +78,16 @@ def build_service(settings: Settings) -> Service:
         blobs.probe()
 
     return Service(store, queue, blobs, DaskExecutor(settings, run_job, queue, probe, give_up), settings)
+
+
+def copy_records(settings: Settings, url: str) -> dict[str, int]:
+    """Copy the database of the settings into an empty one: the number of rows of each table."""
+    source, target = SqlStore(settings.sql_url), SqlStore(url)
+    try:
+        return copy_database(source, target)
+    finally:
+        source.close()
+        target.close()
 
 
 def create_app(settings: Settings | None = None, service: Service | None = None) -> FastAPI:

@@ -163,6 +163,18 @@ def catalogue(
         raise typer.Exit(FAILED)
 
 
+def copy_database(
+    url: Annotated[str, typer.Argument(help="Address of an empty database: postgresql+psycopg://… or sqlite:///…")],
+) -> None:
+    """Copy the database of the settings into an empty one. Stop the service before; files stay where they are."""
+    with plain_errors():
+        from app.cli.settings import read_settings
+        from app.main import copy_records
+
+        copied = copy_records(read_settings(), url)
+    typer.echo(f"Copied {', '.join(f'{count} {table}' for table, count in copied.items())}.")
+
+
 def duration(text: str) -> timedelta:
     """Read an age.
 
@@ -206,6 +218,7 @@ def application(*, with_method_options: bool) -> typer.Typer:
     app.command(epilog=EXIT_CODES)(methods)
     app.command(epilog=EXIT_CODES)(catalogue)
     app.command(epilog=EXIT_CODES)(prune)
+    app.command(epilog=EXIT_CODES)(copy_database)
     return app
 
 
