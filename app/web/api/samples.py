@@ -96,7 +96,7 @@ def _file(description: str, *media_types: str) -> dict[int | str, dict[str, Any]
         200: {"description": description, "content": content},
         206: {"description": "The range that was asked for."},
         304: {"description": "You have it already."},
-        **problems(404, 416, 422, 429),
+        **problems(404, 416, 422, 429, 503),
     }
 
 
