@@ -5,14 +5,16 @@ import logging
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
 from functools import partial
+from uuid import uuid4
 
 from fastapi import FastAPI
 from starlette.middleware import Middleware
 from starlette.staticfiles import StaticFiles
 
-from app import threads
+from app import threads, worker
 from app.errors import InvalidInputError
 from app.executor.dask import DaskExecutor
+from app.executor.keeper import Ask
 from app.experiments.service import Service
 from app.samples import require_files
 from app.settings import ROOT, Settings
@@ -37,7 +39,6 @@ from app.web.pages.errors import render_error
 from app.web.pages.routes import router as pages
 from app.web.request_id import RequestId
 from app.web.shutdown import end_if_given_up, give_up, on_stop_signal
-from app.worker import run_job
 
 log = logging.getLogger(__name__)
 
@@ -77,7 +78,17 @@ def build_service(settings: Settings) -> Service:
         store.ping()
         blobs.probe()
 
-    return Service(store, queue, blobs, DaskExecutor(settings, run_job, queue, probe, give_up), settings)
+    def prove_worker(ask: Ask) -> None:
+        shown = {blobs.put(uuid4().bytes)}
+        try:
+            shown.add(ask(worker.prove, settings.model_copy(update={"operator_token": None}), __version__, *shown))
+            for digest in shown:
+                blobs.path(digest)
+        finally:
+            blobs.remove_unused(shown, lambda candidates: set())
+
+    executor = DaskExecutor(settings, worker.run_job, queue, probe, give_up, prove_worker)
+    return Service(store, queue, blobs, executor, settings)
 
 
 def copy_records(settings: Settings, url: str) -> dict[str, int]:

@@ -74,6 +74,28 @@ def serve(
     )
 
 
+def worker() -> None:
+    """Compute for a service: join the scheduler of MICROTEXTURE_SCHEDULER, and come back whenever it does."""
+    import asyncio
+    import signal
+
+    from app.cli.settings import read_settings
+    from app.worker import work_for
+
+    with plain_errors():
+        settings = read_settings(for_children=True)
+        if settings.scheduler is None:
+            raise InvalidInputError("Set MICROTEXTURE_SCHEDULER to the address of the service's scheduler, tcp://….")
+
+    async def work() -> None:
+        stopping = asyncio.Event()
+        for number in (signal.SIGTERM, signal.SIGINT):
+            asyncio.get_running_loop().add_signal_handler(number, stopping.set)
+        await work_for(settings, stopping)
+
+    asyncio.run(work())
+
+
 def methods(
     name: Annotated[
         str | None,
@@ -219,6 +241,7 @@ def application(*, with_method_options: bool) -> typer.Typer:
     app.command(epilog=EXIT_CODES)(catalogue)
     app.command(epilog=EXIT_CODES)(prune)
     app.command(epilog=EXIT_CODES)(copy_database)
+    app.command(epilog=EXIT_CODES)(worker)
     return app
 
 

@@ -15,7 +15,7 @@ from app.executor.backoff import Backoff
 from app.executor.dispatched import Dispatched, Verdict, verdict
 from app.executor.endings import Endings
 from app.executor.engine import Engine
-from app.executor.keeper import EngineKeeper
+from app.executor.keeper import EngineKeeper, Prove
 from app.executor.lapses import Lapses
 from app.experiments.model import Beat, Lease
 from app.experiments.ports import JobQueue, Records, Run
@@ -42,8 +42,7 @@ class DaskExecutor:
     queue : JobQueue
     probe : callable
         Raises `UnavailableError` while jobs could not use the database or the storage.
-    on_hopeless : callable, optional
-        Called when engine after engine has no workers.
+    on_hopeless, prove : callable, optional, see `EngineKeeper`
     """
 
     def __init__(
@@ -53,11 +52,12 @@ class DaskExecutor:
         queue: JobQueue,
         probe: Callable[[], None],
         on_hopeless: Callable[[], None] = lambda: None,
+        prove: Prove | None = None,
     ) -> None:
         self._settings = settings
         self._queue = queue
         self._probe = probe
-        self._keeper = EngineKeeper(settings, run, self._awaken, on_hopeless)
+        self._keeper = EngineKeeper(settings, run, self._awaken, on_hopeless, prove)
         self._lapses = Lapses()
         self._away = Backoff(FIRST_PAUSE_SECONDS, LONGEST_PAUSE_SECONDS)
         self._looked = 0.0

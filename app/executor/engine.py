@@ -82,6 +82,14 @@ class Engine:
         found = self._client.scheduler_info()["workers"]
         return {address: worker["nthreads"] for address, worker in found.items()}
 
+    def ask(self, address: str, function: Callable[..., Any], *arguments: Any) -> Any:
+        """Call a function on a worker, which may be busy, and raise what it raises; `TimeoutError` after a while."""
+        call = self._client._run(function, *arguments, workers=[address])
+        answers = asyncio.run_coroutine_threadsafe(
+            asyncio.wait_for(call, CONNECT_SECONDS), self._client.loop.asyncio_loop
+        ).result()
+        return answers[address]
+
     def busy(self) -> dict[str, int]:
         """Tasks of every worker, whoever gave them, by its address."""
         return {address: len(keys) for address, keys in self._client.processing().items()}

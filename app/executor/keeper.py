@@ -4,6 +4,8 @@ import logging
 import threading
 import time
 from collections.abc import Callable
+from functools import partial
+from typing import Any
 
 from app.executor.backoff import Backoff
 from app.executor.engine import Engine
@@ -13,7 +15,13 @@ from app.settings import Settings
 
 log = logging.getLogger(__name__)
 
+Ask = Callable[..., Any]
+"""``ask(function, *arguments)``: calls a function on a worker"""
+
+Prove = Callable[[Ask], None]
+
 WORKERS_SECONDS = 5.0  # how often the list of workers is asked for, besides when it is known to have changed
+REFUSED_SECONDS = 15.0  # before a worker that sees something else is asked again
 FIRST_PAUSE_SECONDS, LONGEST_PAUSE_SECONDS = 0.5, 15.0  # before a scheduler that is away is tried again
 
 
@@ -29,15 +37,25 @@ class EngineKeeper:
         Called from a thread of Dask's when workers came or left.
     on_hopeless : callable
         Called when engine after engine has no workers.
+    prove : callable ``(ask)``, optional
+        Raises if a worker of an external engine, which it is given the means to ``ask``, is none of ours.
     """
 
     def __init__(
-        self, settings: Settings, run: Run, on_workers: Callable[[], None], on_hopeless: Callable[[], None]
+        self,
+        settings: Settings,
+        run: Run,
+        on_workers: Callable[[], None],
+        on_hopeless: Callable[[], None],
+        prove: Prove | None = None,
     ) -> None:
         self._settings = settings
         self._run = run
         self._on_workers = on_workers
         self._on_hopeless = on_hopeless
+        self._prove = prove if settings.scheduler is not None else None
+        self._proven: set[str] = set()
+        self._refused: dict[str, float] = {}
         self._opening = Backoff(FIRST_PAUSE_SECONDS, LONGEST_PAUSE_SECONDS)
         self._supervision = Supervision()
         self._changed = threading.Event()
@@ -76,7 +94,9 @@ class EngineKeeper:
             return False
         self._changed.clear()
         self._asked = now
-        self.workers = self.engine.workers()
+        found = self.engine.workers()
+        self._proven &= found.keys()
+        self.workers = {address: threads for address, threads in found.items() if self._is_proven(self.engine, address)}
         self._condemned &= self.workers.keys()
         self._supervision.see(self.workers)
         return True
@@ -94,6 +114,22 @@ class EngineKeeper:
         self._condemned.clear()
         if engine is not None:
             engine.close()
+
+    def _is_proven(self, engine: Engine, address: str) -> bool:
+        """Whether a worker sees what the service sees; one that does not gets no job, and is asked again later."""
+        if self._prove is None or address in self._proven:
+            return True
+        if time.monotonic() < self._refused.get(address, 0.0):
+            return False
+        try:
+            self._prove(partial(engine.ask, address))
+        except Exception as error:
+            log.error("the worker %s gets no job: %s", address, error)
+            self._refused[address] = time.monotonic() + REFUSED_SECONDS
+            return False
+        self._proven.add(address)
+        self._refused.pop(address, None)
+        return True
 
     def _open(self) -> None:
         if not self._opening.due:

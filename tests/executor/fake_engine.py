@@ -69,6 +69,9 @@ class Engine:
         self._ask("workers", None)
         return dict(self.threads)
 
+    def ask(self, address: str, function: Callable[..., Any], *arguments: Any) -> Any:
+        return function(*arguments)
+
     def busy(self) -> dict[str, int]:
         return {}
 
