@@ -79,7 +79,15 @@ class Further {
     const sample = this.select.value;
     if (sample !== this.shown) {
       this.shown = sample;
-      const { width, height, frames, rate, version = "", crop = "", ...thanks } = this.select.selectedOptions[0]?.dataset ?? {};
+      const {
+        width,
+        height,
+        frames,
+        rate,
+        version = "",
+        crop = "",
+        ...thanks
+      } = this.select.selectedOptions[0]?.dataset ?? {};
       const video = Number(frames) > 1 ? `${recordOf(sample)}/video?v=${version}` : "";
       this.thank(video ? "Clip" : "Photograph", thanks);
       for (const part of findAll(this.root, ".ground, .numbers")) part.hidden = !sample;
