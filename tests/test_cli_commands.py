@@ -86,3 +86,30 @@ def test_a_wrong_setting_is_named(monkeypatch: pytest.MonkeyPatch, name: str, va
     done = microtexture("serve")
     assert done.exit_code == 2
     assert f"MICROTEXTURE_{name.upper()} is set wrongly" in done.stderr
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("variables", "code", "words"),
+    [
+        ({"DATABASE_URL": "postgresql+psycopg://user:secret@127.0.0.1:1/none"}, 1, "the database cannot be used"),
+        ({"SCHEDULER": "tcp://127.0.0.1:1"}, 2, "Set MICROTEXTURE_DATABASE_URL to a PostgreSQL database"),
+        (
+            {"SCHEDULER": "tcp://x:1", "DATABASE_URL": "postgresql://u@h/x", "DATA_DIR": "data"},
+            2,
+            "Set MICROTEXTURE_DATA_DIR to an absolute path",
+        ),
+    ],
+)
+def test_a_service_that_cannot_start_says_why_in_a_line_or_two(
+    tmp_path: Path, variables: dict[str, str], code: int, words: str
+) -> None:
+    """Without a traceback and without a password."""
+    settings = {f"MICROTEXTURE_{name}": value for name, value in ({"DATA_DIR": str(tmp_path)} | variables).items()}
+    program = str(Path(sys.executable).parent / "microtexture")
+    command, environment = [program, "serve", "--port", "1"], os.environ | settings
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == code
+    assert len(done.stderr.splitlines()) <= 2, done.stderr
+    assert words in done.stderr.splitlines()[-1]
+    assert "secret" not in done.stderr

@@ -42,8 +42,6 @@ def serve(
     ] = 500,
 ) -> None:
     """Serve the web pages and the REST API."""
-    from functools import partial
-
     import uvicorn
 
     from app.cli.settings import read_settings
@@ -58,10 +56,10 @@ def serve(
         settings.data_dir.mkdir(parents=True, exist_ok=True)
         if not os.access(settings.data_dir, os.W_OK):
             raise PermissionError(errno.EACCES, "The data directory cannot be written", str(settings.data_dir))
+        app = create_app(settings)
 
     uvicorn.run(
-        partial(create_app, settings),
-        factory=True,
+        app,
         host=host,
         port=port,
         log_config=configuration(settings.log_format, settings.log_level),

@@ -89,10 +89,7 @@ class ExperimentStore(Protocol):
             At ``cursor``, if it is malformed.
         """
 
-    def unfinished(self) -> list[str]:
-        """List the ids of queued and running experiments that are not transient, oldest first."""
-
-    def start(self, lease: Lease | str) -> Experiment | None:
+    def start(self, lease: Lease) -> Experiment | None:
         """Mark an experiment as running.
 
         Returns
@@ -103,7 +100,7 @@ class ExperimentStore(Protocol):
 
     def succeed(
         self,
-        lease: Lease | str,
+        lease: Lease,
         outputs: Sequence[Output],
         timings: Mapping[str, float],
         diagnostics: Mapping[str, Any],
@@ -127,7 +124,7 @@ class ExperimentStore(Protocol):
             False, and nothing is recorded, if the lease is not held any more.
         """
 
-    def fail(self, lease: Lease | str, error: str, cause: str | None = None) -> bool:
+    def fail(self, lease: Lease, error: str, cause: str | None = None) -> bool:
         """Record the failure of an experiment, and end the job.
 
         Parameters
@@ -147,7 +144,7 @@ class ExperimentStore(Protocol):
     def cancel(self, experiment_id: str) -> bool:
         """Record the cancellation of a queued or running experiment, and end its job; False if it was finished."""
 
-    def add_output(self, lease: Lease | str, output: Output) -> bool:
+    def add_output(self, lease: Lease, output: Output) -> bool:
         """Add an output that was computed at 16 bits after the others, or replace the one of its name.
 
         Returns

@@ -27,13 +27,12 @@ def put(connection: Connection, job: str, client: str) -> None:
     connection.execute(jobs.insert().values(id=job, client=client, queued_at=now(), fence=start, attempts=[]))
 
 
-def held(connection: Connection, lease: Lease | str) -> Row | None:
+def held(connection: Connection, lease: Lease) -> Row | None:
     """Find and lock the row of a lease that is still held.
 
     Who changes both locks this row first, then the experiment's: in another order two could wait for each other.
     """
-    where = [jobs.c.id == lease] if isinstance(lease, str) else of(lease)
-    return connection.execute(jobs.select().where(*where).with_for_update()).first()
+    return connection.execute(jobs.select().where(*of(lease)).with_for_update()).first()
 
 
 def of(lease: Lease) -> tuple[sa.ColumnElement[bool], ...]:
@@ -64,10 +63,6 @@ def put_back(connection: Connection, job: str, attempts: Sequence[Attempt]) -> N
 def unfinished(experiment_id: str) -> sa.Update:
     """Change an experiment that is queued or runs."""
     return experiments.update().where(experiments.c.id == experiment_id, experiments.c.status.in_(UNFINISHED))
-
-
-def name_of(lease: Lease | str) -> str:
-    return lease if isinstance(lease, str) else lease.job
 
 
 def now() -> datetime:

@@ -11,7 +11,7 @@ from sqlalchemy.exc import IntegrityError
 from app.errors import ConflictError, DeletedError, NotFoundError
 from app.experiments.model import DEEP, Attempt, Experiment, Lease, Output, Page, Sample, Status
 from app.store.database import Database
-from app.store.jobs import UNFINISHED, held, name_of, now, put, remove, remove_with_deep, unfinished
+from app.store.jobs import held, now, put, remove, remove_with_deep, unfinished
 from app.store.migrate import upgrade
 from app.store.rows import (
     attempt_values,
@@ -143,40 +143,24 @@ class SqlStore:
         more = len(found) > limit
         return Page(tuple(found[:limit]), cursor_after(found[limit - 1]) if more else None)
 
-    def unfinished(self) -> list[str]:
-        query = (
-            sa.select(experiments.c.id)
-            .where(experiments.c.status.in_(UNFINISHED), ~experiments.c.transient)
-            .order_by(experiments.c.created_at, experiments.c.id)
-        )
-        return self._ids(query)
-
-    def start(self, lease: Lease | str) -> Experiment | None:
-        job, moment = name_of(lease), now()
-        changes: dict[str, Any] = {"status": Status.RUNNING, "started_at": moment}
+    def start(self, lease: Lease) -> Experiment | None:
         with self.database.writing() as connection:
-            if held(connection, lease) is None and isinstance(lease, Lease):
+            if held(connection, lease) is None:
                 return None
-            found = self._read(connection, experiments.select().where(experiments.c.id == job))
-            if not found or found[0].status.finished:
-                return None
-            if isinstance(lease, str):
-                begun = Attempt(moment, "A worker began it.")
-                changes["charges"] = attempt_values((*found[0].attempts, begun))
-            connection.execute(unfinished(job).values(changes))
-            return self._read(connection, experiments.select().where(experiments.c.id == job))[0]
+            connection.execute(unfinished(lease.job).values(status=Status.RUNNING, started_at=now()))
+            return self._read(connection, experiments.select().where(experiments.c.id == lease.job))[0]
 
     def succeed(
         self,
-        lease: Lease | str,
+        lease: Lease,
         outputs_: Sequence[Output],
         timings: Mapping[str, float],
         diagnostics: Mapping[str, Any],
         environment: Mapping[str, str],
     ) -> bool:
-        job = name_of(lease)
+        job = lease.job
         with self.database.writing() as connection:
-            if held(connection, lease) is None and isinstance(lease, Lease):
+            if held(connection, lease) is None:
                 return False
             changed = connection.execute(
                 experiments.update()
@@ -197,17 +181,16 @@ class SqlStore:
                 )
         return bool(changed)
 
-    def fail(self, lease: Lease | str, error: str, cause: str | None = None) -> bool:
+    def fail(self, lease: Lease, error: str, cause: str | None = None) -> bool:
         values: dict[str, Any] = {"status": Status.FAILED, "error": error, "finished_at": now()}
         with self.database.writing() as connection:
             row = held(connection, lease)
-            if isinstance(lease, Lease):
-                if row is None:
-                    return False
-                if cause is not None:
-                    values["charges"] = [*row.attempts, *attempt_values((Attempt(now(), cause),))]
-            remove(connection, name_of(lease))
-            return bool(connection.execute(unfinished(name_of(lease)).values(values)).rowcount)
+            if row is None:
+                return False
+            if cause is not None:
+                values["charges"] = [*row.attempts, *attempt_values((Attempt(now(), cause),))]
+            remove(connection, lease.job)
+            return bool(connection.execute(unfinished(lease.job).values(values)).rowcount)
 
     def cancel(self, experiment_id: str) -> bool:
         with self.database.writing() as connection:
@@ -215,10 +198,10 @@ class SqlStore:
             change = unfinished(experiment_id).values(status=Status.CANCELLED, finished_at=now())
             return bool(connection.execute(change).rowcount)
 
-    def add_output(self, lease: Lease | str, output: Output) -> bool:
-        experiment_id = name_of(lease).partition(DEEP)[0]
+    def add_output(self, lease: Lease, output: Output) -> bool:
+        experiment_id = lease.job.partition(DEEP)[0]
         with self.database.writing() as connection:
-            if held(connection, lease) is None and isinstance(lease, Lease):
+            if held(connection, lease) is None:
                 return False
             status = connection.scalar(
                 sa.select(experiments.c.status).where(experiments.c.id == experiment_id).with_for_update()

@@ -19,7 +19,7 @@ from app.gallery.exhibits import exhibits
 from app.settings import Settings
 from app.store.blobs import FileBlobs
 from app.store.sql import SqlStore
-from tests.store.records import a_sample, an_experiment
+from tests.store.records import a_sample, an_experiment, started
 
 DAY, SECOND = timedelta(days=1), timedelta(seconds=1)
 LONG = timedelta(days=90)
@@ -34,10 +34,10 @@ def finished(store: SqlStore, blobs: FileBlobs, monkeypatch: pytest.MonkeyPatch)
     def finish(age: timedelta, **values: Any) -> Experiment:
         experiment = an_experiment(sample, **values)
         store.add(experiment)
-        store.start(experiment.id)
+        lease = started(store, experiment)
         with monkeypatch.context() as patch:
             patch.setattr("app.store.sql.now", lambda: datetime.now(UTC) - age)
-            store.succeed(experiment.id, [], {}, {}, {})
+            store.succeed(lease, [], {}, {}, {})
         return store.get(experiment.id)
 
     return finish

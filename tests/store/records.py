@@ -5,8 +5,9 @@ from datetime import UTC, datetime
 from itertools import count
 from typing import Any
 
-from app.experiments.model import Experiment, ExperimentInput, Output, Sample
+from app.experiments.model import DEEP, Experiment, ExperimentInput, Lease, Output, Sample
 from app.images.crop import Rectangle
+from app.store.queue import SqlQueue
 from app.store.sql import SqlStore
 
 START = datetime(2026, 3, 1, 12, 0, 0, 123456, tzinfo=UTC)
@@ -33,10 +34,33 @@ def an_output(name: str = "texture", **values: Any) -> Output:
     return replace(Output(name, "Texture", 64, 32, bytes=5 << 30, digest=f"{next(NUMBERS):064x}"), **values)
 
 
+def lease_of(store: SqlStore, job: str) -> Lease:
+    """Lease this job, whatever waits before it; an output at 16 bits is queued first."""
+    queue, others = SqlQueue(store.database), list[Lease]()
+    if DEEP in job:
+        queue.enqueue(job, "tests")
+    try:
+        while (lease := queue.lease("tests", alone=True)) is not None:
+            if lease.job == job:
+                return lease
+            others.append(lease)
+    finally:
+        for other in others:
+            queue.release(other)
+    raise AssertionError(f"{job} does not wait")
+
+
+def started(store: SqlStore, experiment: Experiment) -> Lease:
+    """Lease and start an experiment that waits."""
+    lease = lease_of(store, experiment.id)
+    assert store.start(lease) is not None
+    return lease
+
+
 def succeeded(store: SqlStore, sample: Sample, **values: Any) -> Experiment:
     experiment = an_experiment(sample, **values)
     store.add(experiment)
-    store.start(experiment.id)
+    lease = started(store, experiment)
     made = [an_output(kind="texture"), an_output("crop"), an_output(".thumbnail-crop")]
-    store.succeed(experiment.id, made, {"b": 0.5, "a": 0.25}, MEASURED, COMPUTED)
+    store.succeed(lease, made, {"b": 0.5, "a": 0.25}, MEASURED, COMPUTED)
     return store.get(experiment.id)

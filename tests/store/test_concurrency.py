@@ -6,8 +6,9 @@ from datetime import timedelta
 
 from app.errors import NotFoundError
 from app.experiments.model import Sample, Status
+from app.store.queue import SqlQueue
 from app.store.sql import SqlStore
-from tests.store.records import START, a_sample, an_experiment, an_output
+from tests.store.records import START, a_sample, an_experiment, an_output, started
 
 
 def test_a_sample_is_never_lost_to_a_new_experiment(store: SqlStore, open_store: Callable[[], SqlStore]) -> None:
@@ -46,8 +47,10 @@ def test_writers_wait_for_one_another(store: SqlStore, sample: Sample, open_stor
     def whole_life(number: int) -> bool:
         mine = stores[number % 2]
         mine.add(experiments[number])
-        mine.start(experiments[number].id)
-        return mine.succeed(experiments[number].id, [an_output()], {}, {}, {})
+        lease = SqlQueue(mine.database).lease("tests", alone=True)
+        assert lease is not None
+        mine.start(lease)
+        return mine.succeed(lease, [an_output()], {}, {}, {})
 
     with ThreadPoolExecutor(4) as pool:
         assert all(pool.map(whole_life, range(40)))
@@ -59,9 +62,9 @@ def test_one_of_two_simultaneous_ends_wins(store: SqlStore, sample: Sample, open
     for _ in range(10):
         experiment = an_experiment(sample)
         store.add(experiment)
-        store.start(experiment.id)
+        lease = started(store, experiment)
         with ThreadPoolExecutor(2) as pool:
-            success = pool.submit(store.succeed, experiment.id, [an_output()], {}, {}, {})
+            success = pool.submit(store.succeed, lease, [an_output()], {}, {}, {})
             cancel = pool.submit(other.cancel, experiment.id)
             assert success.result() != cancel.result()
         recorded = store.get(experiment.id)

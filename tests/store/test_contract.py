@@ -8,11 +8,11 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from app.errors import ConflictError, DeletedError, InvalidInputError, NotFoundError
-from app.experiments.model import Experiment, ExperimentInput, Sample, Status
+from app.experiments.model import Experiment, ExperimentInput, Lease, Sample, Status, deep_job
 from app.images.crop import Frames, Rectangle
 from app.store.sql import SqlStore
 from tests.profiles import examples
-from tests.store.records import START, a_sample, an_experiment, an_output, succeeded
+from tests.store.records import START, a_sample, an_experiment, an_output, lease_of, started, succeeded
 
 
 def test_gives_samples_back_as_they_were(store: SqlStore) -> None:
@@ -30,9 +30,9 @@ def test_gives_videos_back_as_they_were(store: SqlStore) -> None:
     part = ExperimentInput(sample.id, Rectangle(1, 2, 30, 40), Frames(12, 48))
     experiment = an_experiment(sample, inputs=(part,))
     store.add(experiment)
-    store.start(experiment.id)
+    lease = started(store, experiment)
     film = an_output(media_type="video/mp4", frames=96, rate=100 / 7)
-    store.succeed(experiment.id, [film], {}, {}, {})
+    store.succeed(lease, [film], {}, {}, {})
     found = store.get(experiment.id)
     assert (found.inputs, found.outputs) == ((part,), (film,))
 
@@ -90,43 +90,30 @@ def test_success_is_recorded_with_its_outputs_in_order(store: SqlStore, sample: 
     assert experiment.outputs[0].bytes == 5 << 30
     assert experiment.started_at is not None
     assert experiment.finished_at is not None
-    assert len(experiment.attempts) == 1
-
-
-def test_starting_again_counts_an_attempt_until_it_is_finished(store: SqlStore, sample: Sample) -> None:
-    experiment = an_experiment(sample)
-    store.add(experiment)
-    attempts = []
-    for _ in range(2):
-        started = store.start(experiment.id)
-        assert started is not None
-        attempts.append((started.status, len(started.attempts)))
-    assert attempts == [(Status.RUNNING, 1), (Status.RUNNING, 2)]
-    assert store.succeed(experiment.id, [an_output()], {}, {}, {})
-    assert store.start(experiment.id) is None
+    assert experiment.attempts == ()
 
 
 def test_the_first_end_is_the_one_that_counts(store: SqlStore, sample: Sample) -> None:
-    ends: dict[Status, Callable[[str], bool]] = {
-        Status.SUCCEEDED: lambda name: store.succeed(name, [an_output()], {}, {}, {}),
-        Status.FAILED: lambda name: store.fail(name, "too large"),
-        Status.CANCELLED: store.cancel,
+    ends: dict[Status, Callable[[Lease], bool]] = {
+        Status.SUCCEEDED: lambda lease: store.succeed(lease, [an_output()], {}, {}, {}),
+        Status.FAILED: lambda lease: store.fail(lease, "too large"),
+        Status.CANCELLED: lambda lease: store.cancel(lease.job),
     }
     for first, end in ends.items():
         experiment = an_experiment(sample)
         store.add(experiment)
-        store.start(experiment.id)
-        assert end(experiment.id)
+        lease = started(store, experiment)
+        assert end(lease)
         recorded = store.get(experiment.id)
         assert recorded.status is first
-        assert not any(other(experiment.id) for other in ends.values())
+        assert not any(other(lease) for other in ends.values())
         assert store.get(experiment.id) == recorded
 
 
 def test_only_a_running_experiment_succeeds(store: SqlStore, sample: Sample) -> None:
     experiment = an_experiment(sample)
     store.add(experiment)
-    assert not store.succeed(experiment.id, [an_output()], {}, {}, {})
+    assert not store.succeed(lease_of(store, experiment.id), [an_output()], {}, {}, {})
     assert store.get(experiment.id) == experiment
 
 
@@ -134,35 +121,25 @@ def test_what_waits_can_fail_and_be_cancelled(store: SqlStore, sample: Sample) -
     failing, cancelled = an_experiment(sample), an_experiment(sample)
     for experiment in (failing, cancelled):
         store.add(experiment)
-    assert store.fail(failing.id, "a reason")
+    assert store.fail(lease_of(store, failing.id), "a reason")
     assert store.cancel(cancelled.id)
     assert store.get(failing.id).error == "a reason"
     assert store.counts() == {"queued": 0, "running": 0, "succeeded": 0, "failed": 1, "cancelled": 1}
 
 
-def test_names_the_unfinished_oldest_first(store: SqlStore, sample: Sample) -> None:
-    ages = [3, 1, 2, 5, 4]
-    made = {age: an_experiment(sample, created_at=START - timedelta(days=age)) for age in ages}
-    for experiment in made.values():
-        store.add(experiment)
-    store.add(an_experiment(sample, transient=True))
-    store.start(made[2].id)
-    store.cancel(made[4].id)
-    assert store.unfinished() == [made[age].id for age in (5, 3, 2, 1)]
-
-
 def test_an_output_can_be_added_and_replaced(store: SqlStore, sample: Sample) -> None:
     experiment = succeeded(store, sample)
     for output in (an_output(".texture-16"), an_output(".texture-16")):
-        store.add_output(experiment.id, output)
+        store.add_output(lease_of(store, deep_job(experiment.id, "texture")), output)
         assert store.get(experiment.id).outputs == (*experiment.outputs, output)
 
 
 def test_an_unfinished_experiment_takes_no_output(store: SqlStore, sample: Sample) -> None:
     experiment = an_experiment(sample)
     store.add(experiment)
+    lease = lease_of(store, deep_job(experiment.id, "texture"))
     with pytest.raises(ConflictError, match="Only an experiment that succeeded has outputs"):
-        store.add_output(experiment.id, an_output())
+        store.add_output(lease, an_output())
 
 
 def test_listing_can_be_changed(store: SqlStore, sample: Sample) -> None:
@@ -186,8 +163,6 @@ def test_a_deleted_experiment_leaves_a_tombstone_and_nothing_else(store: SqlStor
         store.get(experiment.id)
     assert store.used(digests) == set()
     assert store.page(limit=5).experiments == ()
-    assert store.start(experiment.id) is None
-    assert not store.succeed(experiment.id, [an_output()], {}, {}, {})
 
 
 def test_a_transient_experiment_leaves_no_tombstone(store: SqlStore, sample: Sample) -> None:

@@ -10,10 +10,10 @@ import sqlalchemy as sa
 from sqlalchemy.exc import IntegrityError
 
 from app.errors import ConflictError
-from app.experiments.model import Sample, Status
+from app.experiments.model import Sample, Status, deep_job
 from app.store import jobs, sql
 from app.store.sql import SqlStore
-from tests.store.records import START, a_sample, an_experiment, an_output, succeeded
+from tests.store.records import START, a_sample, an_experiment, an_output, lease_of, started, succeeded
 
 TICK = timedelta(microseconds=1)
 CUT_OFF = pytest.mark.parametrize(
@@ -47,11 +47,11 @@ def test_a_finished_experiment_is_named_if_it_is_older(
     experiment = an_experiment(sample)
     store.add(experiment)
     store.add(an_experiment(sample))
-    store.start(experiment.id)
+    lease = started(store, experiment)
     monkeypatch.setattr(sql, "now", lambda: START - age)
     ends: dict[Status, Callable[[], bool]] = {
-        Status.SUCCEEDED: lambda: store.succeed(experiment.id, [], {}, {}, {}),
-        Status.FAILED: lambda: store.fail(experiment.id, "a reason"),
+        Status.SUCCEEDED: lambda: store.succeed(lease, [], {}, {}, {}),
+        Status.FAILED: lambda: store.fail(lease, "a reason"),
         Status.CANCELLED: lambda: store.cancel(experiment.id),
     }
     assert ends[end]()
@@ -102,17 +102,17 @@ def test_digests_are_looked_up_in_batches_of_which_none_is_lost(store: SqlStore,
 def test_an_output_is_added_after_those_that_are_there(store: SqlStore, sample: Sample) -> None:
     experiment = succeeded(store, sample)
     added = an_output("aaa")
-    store.add_output(experiment.id, added)
+    store.add_output(lease_of(store, deep_job(experiment.id, "aaa")), added)
     assert store.get(experiment.id).outputs == (*experiment.outputs, added)
 
 
-@pytest.mark.parametrize("end", [SqlStore.cancel, lambda store, name: store.fail(name, "a reason")])
+@pytest.mark.parametrize("end", [SqlStore.cancel, lambda store, name: store.fail(lease_of(store, name), "a reason")])
 def test_only_what_succeeded_takes_an_output(store: SqlStore, sample: Sample, end: Callable[..., bool]) -> None:
     experiment = an_experiment(sample)
     store.add(experiment)
     assert end(store, experiment.id)
     with pytest.raises(ConflictError, match="succeeded"):
-        store.add_output(experiment.id, an_output())
+        store.add_output(lease_of(store, deep_job(experiment.id, "texture")), an_output())
     assert store.get(experiment.id).outputs == ()
 
 
@@ -123,9 +123,9 @@ def test_moments_are_those_of_the_change(store: SqlStore, sample: Sample, monkey
     store.add(experiment)
     found = store.get(experiment.id)
     assert (found.started_at, found.finished_at) == (None, None)
-    store.start(experiment.id)
+    lease = started(store, experiment)
     now[0] = later = START + timedelta(seconds=3)
-    store.succeed(experiment.id, [], {}, {}, {})
+    store.succeed(lease, [], {}, {}, {})
     found = store.get(experiment.id)
     assert (found.started_at, found.finished_at) == (START, later)
 
