@@ -4,6 +4,7 @@ import logging
 import logging.config
 import os
 from functools import lru_cache
+from multiprocessing import parent_process
 from pathlib import Path
 
 from app.errors import InvalidInputError, NotFoundError
@@ -24,7 +25,8 @@ __all__ = ["prove", "run_job", "work_for"]
 
 def run_job(settings: Settings, lease: Lease) -> None:
     """Run one job with the store and the files that the settings name; they stay open for the next one."""
-    _log_as_the_service(settings.log_format, settings.log_level)
+    if parent_process() is not None:
+        _log_as_the_service(settings.log_format, settings.log_level)
     store = _store(settings.sql_url)
     blobs = _blobs(settings.data_dir / "files")
     queue = SqlQueue(store.database)

@@ -8,7 +8,6 @@ import pytest
 from engine_bench import Bench, a_bench, running
 
 from app.executor.memory import KEPT, MALLOC
-from app.settings import ROOT
 
 
 @pytest.fixture(scope="module")
@@ -44,9 +43,4 @@ def test_a_large_run_gives_its_memory_back(bench: Bench) -> None:
     bench.submit("large")
     assert bench.end_of("large") is None
     worker = psutil.Process(bench.started("large")[0])
-    assert worker.memory_info().rss < KEPT
-
-
-def test_the_operators_recipe_for_other_machines_has_the_same_variables() -> None:
-    recipe = (ROOT / "docs" / "operations.md").read_text(encoding="utf-8")
-    assert " ".join(f"{name}={value}" for name, value in MALLOC.items()) in recipe
+    bench.until(lambda: worker.memory_info().rss < KEPT)  # its record comes a moment before

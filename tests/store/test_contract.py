@@ -129,8 +129,9 @@ def test_what_waits_can_fail_and_be_cancelled(store: SqlStore, sample: Sample) -
 
 def test_an_output_can_be_added_and_replaced(store: SqlStore, sample: Sample) -> None:
     experiment = succeeded(store, sample)
+    lease = lease_of(store, deep_job(experiment.id, "texture"))
     for output in (an_output(".texture-16"), an_output(".texture-16")):
-        store.add_output(lease_of(store, deep_job(experiment.id, "texture")), output)
+        assert store.add_output(lease, output)
         assert store.get(experiment.id).outputs == (*experiment.outputs, output)
 
 

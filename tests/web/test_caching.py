@@ -217,12 +217,15 @@ def test_a_picture_that_is_unlisted_is_no_longer_kept_by_everybody(site, operato
 def test_a_file_that_is_removed_before_it_is_sent_is_not_found(site, experiments, monkeypatch, tmp_path, path):
     """Its experiment is deleted, or the cache makes room."""
     outputs = site.service.outputs
-    get = outputs.get
+    fetch = outputs.fetch
 
     async def render(*arguments):
         return tmp_path / "gone.webp", "image/webp"
 
-    monkeypatch.setattr(outputs, "get", lambda *names: (get(*names)[0], tmp_path / "gone"))
+    async def fetch_gone(*names):
+        return (await fetch(*names))[0], tmp_path / "gone"
+
+    monkeypatch.setattr(outputs, "fetch", fetch_gone)
     monkeypatch.setattr(outputs, "render", render)
     answer = site.client.get(f"{experiments['listed']['url']}/outputs/{path}")
     assert (answer.status_code, answer.headers["Content-Type"]) == (404, "application/problem+json")
