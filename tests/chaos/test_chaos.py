@@ -29,10 +29,7 @@ BACKLOG = 8  # experiments that were accepted before the first fault
 
 Scenarios = dict[str, tuple[Kind, list[Fault]]]
 IN_SHORT: Scenarios = {
-    "SQLite": (
-        SQLITE,
-        [*EMBEDDED_KILLS, faults.restarted, faults.sqlite_locked, faults.directory_gone, faults.clock_set],
-    ),
+    "SQLite": (SQLITE, EMBEDDED_KILLS),
     "PostgreSQL": (TWO_POSTGRESQL, [faults.postgresql_stopped, faults.one_server, faults.one_worker]),
     "external engine": (EXTERNAL, [faults.one_worker, faults.nanny, faults.scheduler]),
     "disk full": (SQLITE, [faults.disk_full]),
