@@ -18,7 +18,7 @@ from app.store import migrate, schema
 from app.store.database import Database
 from app.store.queue import SqlQueue
 from app.store.sql import SqlStore
-from tests.store.records import a_sample, succeeded
+from tests.store.records import a_sample, an_experiment, started
 
 COMMITS = ("8cff3b2", "a290528", "9abed58", "c274880")
 
@@ -113,7 +113,10 @@ def test_attempts_become_their_number_when_the_schema_goes_back(
     store = open_store()
     sample = a_sample()
     store.add_sample(sample)
-    made = succeeded(store, sample)
+    experiment = an_experiment(sample)
+    store.add(experiment)
+    SqlQueue(store.database).release(started(store, experiment), "Its worker process died.")
+    made = store.get(experiment.id)
     migrate.downgrade(store.database)
     with store.database.reading() as connection:
         count = connection.scalar(sa.text("SELECT attempts FROM experiments"))
