@@ -15,6 +15,7 @@ from app import threads, worker
 from app.errors import InvalidInputError
 from app.executor.dask import DaskExecutor
 from app.executor.keeper import Ask
+from app.experiments.availability import probe
 from app.experiments.service import Service
 from app.samples import require_files
 from app.settings import ROOT, Settings
@@ -74,10 +75,6 @@ def build_service(settings: Settings) -> Service:
     store = SqlStore(settings.sql_url)
     queue, blobs = SqlQueue(store.database), FileBlobs(settings.data_dir / "files", settings.min_free_bytes)
 
-    def probe() -> None:
-        store.ping()
-        blobs.probe()
-
     def prove_worker(ask: Ask) -> None:
         shown = {blobs.put(uuid4().bytes)}
         try:
@@ -87,7 +84,7 @@ def build_service(settings: Settings) -> Service:
         finally:
             blobs.remove_unused(shown, lambda candidates: set())
 
-    executor = DaskExecutor(settings, worker.run_job, queue, probe, give_up, prove_worker)
+    executor = DaskExecutor(settings, worker.run_job, queue, partial(probe, store, blobs), give_up, prove_worker)
     return Service(store, queue, blobs, executor, settings)
 
 

@@ -9,6 +9,18 @@ from app.experiments.ports import BlobStore, Executor, ExperimentStore
 FRESH_SECONDS = 1.0  # how long an answer is good for
 
 
+def probe(store: ExperimentStore, blobs: BlobStore) -> None:
+    """Try database and storage.
+
+    Raises
+    ------
+    UnavailableError
+        Naming the part that is away.
+    """
+    store.ping()
+    blobs.probe()
+
+
 class Availability:
     """Which part of the service is away.
 
@@ -38,7 +50,7 @@ class Availability:
         with self._asking:  # those who ask meanwhile get the answer to the first
             if time.monotonic() - self._asked > FRESH_SECONDS:
                 try:
-                    self.probe()
+                    probe(self._store, self._blobs)
                     self._records = None
                 except UnavailableError as error:
                     self._records = error
@@ -49,14 +61,3 @@ class Availability:
         """Raise `UnavailableError` if an upload or experiment could not be recorded now: before it is written."""
         if (error := self.unwritable()) is not None:
             raise UnavailableError(error.part, error.message)
-
-    def probe(self) -> None:
-        """Try database and storage.
-
-        Raises
-        ------
-        UnavailableError
-            Naming the part that is away.
-        """
-        self._store.ping()
-        self._blobs.probe()

@@ -25,9 +25,15 @@ def explain_failure(job: str, error: Exception) -> str:
 def unavailability(error: OSError) -> UnavailableError:
     """Say what a file that cannot be read or written is short of: never the experiment's fault."""
     log.warning("a file cannot be read or written", exc_info=error)
-    if error.errno in FULL:
-        return UnavailableError(DISK_SPACE, "There is no room left on the disk of the service's files.")
-    return UnavailableError(STORAGE, "The service's files cannot be read or written for now.")
+    part = part_of(error)
+    if part == DISK_SPACE:
+        return UnavailableError(part, "There is no room left on the disk of the service's files.")
+    return UnavailableError(part, "The service's files cannot be read or written for now.")
+
+
+def part_of(error: OSError) -> str:
+    """Which part is away if a file cannot be read or written: room on the disk, or the storage as a whole."""
+    return DISK_SPACE if error.errno in FULL else STORAGE
 
 
 def out_of_time(seconds: float) -> str:

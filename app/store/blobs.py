@@ -1,6 +1,5 @@
 """Blob store: files by the SHA-256 of their content, under one directory."""
 
-import errno
 import fcntl
 import hashlib
 import os
@@ -11,9 +10,9 @@ from pathlib import Path
 from uuid import uuid4
 
 from app.errors import DISK_SPACE, STORAGE, NotFoundError, UnavailableError
+from app.experiments.failures import part_of
 
 PROBE = b"can be written and read"
-FULL = {errno.ENOSPC, errno.EDQUOT}
 
 
 class FileBlobs:
@@ -103,8 +102,7 @@ class FileBlobs:
                 path.unlink(missing_ok=True)
             room = os.statvfs(self.directory)
         except OSError as error:
-            part = DISK_SPACE if error.errno in FULL else STORAGE
-            raise UnavailableError(part, f"The files cannot be written for now: {error.strerror}.") from error
+            raise UnavailableError(part_of(error), f"The files cannot be written for now: {error.strerror}.") from error
         if not same:
             raise UnavailableError(STORAGE, "A file that was just written cannot be read back.")
         if room.f_bavail * room.f_frsize < self._min_free_bytes:

@@ -1,6 +1,5 @@
 """One executor under test, and what its callbacks were told."""
 
-import socket
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -91,12 +90,6 @@ class Bench:
         with self._changed:
             self.told.append(job)
             self._changed.notify_all()
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
 
 
 def a_bench(kind: str, directory: Path, **values: Any) -> Bench:

@@ -172,6 +172,11 @@ class Bench:
         pytest.fail("what was waited for did not come")
 
 
+def messages(caplog: pytest.LogCaptureFixture) -> list[tuple[int, str]]:
+    """What was logged, with its levels."""
+    return [(record.levelno, record.message) for record in caplog.records]
+
+
 @contextmanager
 def dispatching(monkeypatch: pytest.MonkeyPatch, directory: Path) -> Iterator[Bench]:
     """Make an executor with three engines, one after the other, that does not pause for long."""

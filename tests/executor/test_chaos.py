@@ -12,9 +12,10 @@ from typing import Any
 
 import psutil
 import pytest
-from engine_bench import SECONDS, Bench, a_bench, free_port, running
+from engine_bench import SECONDS, Bench, a_bench, running
 
 from app.experiments.model import ATTEMPTS, Status
+from tests.store.conftest import free_port
 
 pytestmark = pytest.mark.chaos
 

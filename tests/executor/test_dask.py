@@ -10,7 +10,7 @@ from distributed.scheduler import KilledWorker
 
 from app.errors import STORAGE, UnavailableError
 from app.experiments.model import Snapshot, Status
-from tests.executor.fake_engine import SUFFIX, WORKER, Bench, dispatching
+from tests.executor.fake_engine import SUFFIX, WORKER, Bench, dispatching, messages
 
 KILLED = KilledWorker("task", None, 0)  # type: ignore[arg-type] # which worker it was is not looked at
 AWAY = UnavailableError(STORAGE, "The files are away.")
@@ -20,10 +20,6 @@ AWAY = UnavailableError(STORAGE, "The files are away.")
 def bench(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Bench]:
     with dispatching(monkeypatch, tmp_path) as bench:
         yield bench
-
-
-def messages(caplog: pytest.LogCaptureFixture) -> list[tuple[int, str]]:
-    return [(record.levelno, record.message) for record in caplog.records]
 
 
 # The engine

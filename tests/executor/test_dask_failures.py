@@ -13,7 +13,7 @@ from app.executor import endings
 from app.executor.dispatched import DIED
 from app.executor.messages import LOST, UNRECORDED, UNUSABLE
 from app.experiments.model import ATTEMPTS, Status
-from tests.executor.fake_engine import SUFFIX, WORKER, Bench, dispatching
+from tests.executor.fake_engine import SUFFIX, WORKER, Bench, dispatching, messages
 
 KILLED = KilledWorker("task", None, 0)  # type: ignore[arg-type] # which worker it was is not looked at
 AWAY = UnavailableError(STORAGE, "The files are away.")
@@ -23,10 +23,6 @@ AWAY = UnavailableError(STORAGE, "The files are away.")
 def bench(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Bench]:
     with dispatching(monkeypatch, tmp_path) as bench:
         yield bench
-
-
-def messages(caplog: pytest.LogCaptureFixture) -> list[tuple[int, str]]:
-    return [(record.levelno, record.message) for record in caplog.records]
 
 
 def waits(bench: Bench, name: str) -> bool:

@@ -9,20 +9,13 @@ from app.executor import dask, keeper
 from app.executor.dask import GRACE_SECONDS, SILENCE_SECONDS
 from app.executor.dispatched import Dispatched, Verdict, verdict
 from tests.executor.fake_engine import LIMIT, WORKER, Bench, dispatching
+from tests.still_clock import Clock
 
 
 @pytest.fixture
 def bench(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Iterator[Bench]:
     with dispatching(monkeypatch, tmp_path) as bench:
         yield bench
-
-
-class Clock:
-    def __init__(self) -> None:
-        self.now = 1000.0
-
-    def monotonic(self) -> float:
-        return self.now
 
 
 @pytest.fixture

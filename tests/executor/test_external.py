@@ -11,13 +11,14 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from engine_bench import SECONDS, a_bench, free_port, running
+from engine_bench import SECONDS, a_bench, running
 
 from app.errors import InvalidInputError
 from app.executor import keeper
 from app.executor.keeper import EngineKeeper
 from app.settings import Settings
 from tests.executor.fake_engine import WORKER, Engine
+from tests.store.conftest import free_port
 
 QUIET: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
 PATHS = os.pathsep.join([str(Path(__file__).parent), str(Path(__file__).parents[2])])

@@ -5,14 +5,7 @@ import pytest
 from app.executor import lapses
 from app.executor.lapses import LEASE_SECONDS, Lapses
 from app.experiments.model import Beat
-
-
-class Clock:
-    def __init__(self) -> None:
-        self.now = 1000.0
-
-    def monotonic(self) -> float:
-        return self.now
+from tests.still_clock import Clock
 
 
 @pytest.fixture

@@ -7,14 +7,7 @@ import pytest
 from app.executor import supervision
 from app.executor.backoff import Backoff
 from app.executor.supervision import DESERTED_SECONDS, HOPELESS_SECONDS, Supervision
-
-
-class Clock:
-    def __init__(self) -> None:
-        self.now = 1000.0
-
-    def monotonic(self) -> float:
-        return self.now
+from tests.still_clock import Clock
 
 
 @pytest.fixture

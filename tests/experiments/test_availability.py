@@ -12,14 +12,7 @@ from app.experiments.availability import FRESH_SECONDS, Availability
 from app.experiments.service import Service
 from app.settings import Settings
 from tests.experiments.running import OWNER, a_request
-
-
-class Clock:
-    def __init__(self) -> None:
-        self.now = 1000.0
-
-    def monotonic(self) -> float:
-        return self.now
+from tests.still_clock import Clock
 
 
 class Part:

@@ -9,7 +9,7 @@ from app.store.blobs import FileBlobs
 from app.store.queue import SqlQueue
 from app.store.sql import SqlStore
 from tests.experiments.jobs import Breaking, lease_of, left_over, run, submit
-from tests.experiments.test_stage_timer import Clock
+from tests.still_clock import Clock
 
 
 @pytest.fixture

@@ -5,16 +5,7 @@ import pytest
 from app.experiments import stage_timer
 from app.experiments.stage_timer import StageTimer
 from tests.experiments.test_diagnostics import silent
-
-
-class Clock:
-    """A clock that stands still but for what is added."""
-
-    def __init__(self) -> None:
-        self.now = 1000.0
-
-    def perf_counter(self) -> float:
-        return self.now
+from tests.still_clock import Clock
 
 
 def test_the_seconds_of_a_stage_are_those_between_its_first_call_and_the_next_stages(

@@ -2,24 +2,7 @@
 
 from typing import Any
 
-from app.experiments.tokens import new_token
-
-FORM = {
-    "sample": "gravel_gray",
-    "crop.x": "4",
-    "crop.y": "6",
-    "crop.width": "20",
-    "crop.height": "16",
-    "method": "rpn",
-    "size": "1",
-    "seed": "3",
-    "rpn.alpha": "0.1",
-}
-
-
-def own() -> dict[str, str]:
-    """Headers of somebody new."""
-    return {"Authorization": f"Bearer {new_token()}"}
+from tests.web.test_limits import FORM, own
 
 
 def test_beyond_its_share_a_client_is_refused_and_others_are_not(serve: Any, tmp_path: Any) -> None:

@@ -9,16 +9,9 @@ from limits.strategies import MovingWindowRateLimiter
 from app.web import windows
 from app.web.windows import MonotonicWindows
 from tests.profiles import examples
+from tests.still_clock import Clock
 
 STEPS = st.lists(st.tuples(st.floats(0, 40), st.integers(1, 4)), max_size=40)
-
-
-class Clock:
-    def __init__(self) -> None:
-        self.seconds = 1000.0
-
-    def monotonic(self) -> float:
-        return self.seconds
 
 
 @given(steps=STEPS, most=st.integers(1, 9))
@@ -32,14 +25,14 @@ def test_within_any_minute_no_more_is_taken_than_allowed(steps: list[tuple[float
         limiter, item = MovingWindowRateLimiter(storage), RateLimitItemPerMinute(most)
         taken: list[tuple[float, int]] = []
         for pause, amount in steps:
-            clock.seconds += pause
-            used = sum(each for moment, each in taken if moment > clock.seconds - 60)
+            clock.now += pause
+            used = sum(each for moment, each in taken if moment > clock.now - 60)
             assert limiter.get_window_stats(item, "key").remaining == most - used
             fits = used + amount <= most
             assert limiter.test(item, "key", cost=amount) is fits
             assert limiter.hit(item, "key", cost=amount) is fits
             if fits:
-                taken.append((clock.seconds, amount))
+                taken.append((clock.now, amount))
 
 
 def test_after_the_announced_wait_there_is_room(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -48,11 +41,11 @@ def test_after_the_announced_wait_there_is_room(monkeypatch: pytest.MonkeyPatch)
     limiter, item = MovingWindowRateLimiter(MonotonicWindows()), RateLimitItemPerMinute(2)
     for _ in range(2):
         limiter.hit(item, "key")
-        clock.seconds += 7
-    wait = limiter.get_window_stats(item, "key").reset_time - clock.seconds
-    clock.seconds += wait - 0.01
+        clock.now += 7
+    wait = limiter.get_window_stats(item, "key").reset_time - clock.now
+    clock.now += wait - 0.01
     assert not limiter.test(item, "key")
-    clock.seconds += 0.02
+    clock.now += 0.02
     assert limiter.hit(item, "key")
 
 
@@ -62,6 +55,6 @@ def test_keys_that_do_not_come_back_are_forgotten(monkeypatch: pytest.MonkeyPatc
     storage = MonotonicWindows()
     for number in range(1000):
         storage.acquire_entry(f"key {number}", 1, 60)
-    clock.seconds += 61
+    clock.now += 61
     storage.acquire_entry("another", 1, 60)
     assert storage.reset() == 1
